@@ -1,0 +1,33 @@
+# Two commands matter: `make run` (the window, or the main job when there is no display) and `make test`.
+VENV := .venv
+PYTHON := $(VENV)/bin/python
+APT := libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri libgles2 libxkbcommon0 libdbus-1-3 libfontconfig1 fonts-dejavu-core
+STAMP := $(VENV)/.installed
+
+.PHONY: run test lint setup clean
+
+setup: $(STAMP)
+
+# Debian's packages give the offscreen renderer its software GL and Qt its libraries. Skipped where apt-get is absent.
+$(STAMP): pyproject.toml Makefile
+	@if command -v apt-get >/dev/null && ! dpkg -s $(APT) >/dev/null 2>&1; then \
+	  apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(APT); fi
+	test -x $(PYTHON) || python3 -m venv $(VENV)
+	$(PYTHON) -m pip install -q --upgrade pip
+	$(PYTHON) -m pip install -q -e '.[dev]'
+	touch $(STAMP)
+
+run: setup
+	$(PYTHON) -m app.main_job $(TAKE)
+
+lint: setup
+	$(PYTHON) -m ruff check .
+	$(PYTHON) -m ruff format --check .
+	$(PYTHON) -m mypy
+	$(VENV)/bin/lint-imports
+
+test: lint
+	QT_QPA_PLATFORM=offscreen $(PYTHON) -m pytest
+
+clean:
+	rm -rf $(VENV) out runs

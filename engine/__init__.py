@@ -1,0 +1,1 @@
+"""Methods for editing facial performances: numpy, scipy and torch, no window and no renderer."""

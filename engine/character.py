@@ -1,0 +1,96 @@
+"""The character: a mesh with shapes, landmarks and colours; weights become vertices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.errors import AssetError
+from engine.take import SHAPE_INDEX, SHAPES, Array
+
+BUNDLED = Path(__file__).parent.parent / "assets" / "head" / "head.npz"
+_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
+
+
+@dataclass(frozen=True, eq=False)
+class Character:
+    """A blendshape head in its own file's frame: millimetres, Y up, Z forward, the character's left at +X.
+
+    Attributes
+    ----------
+    neutral : (vertices, 3) float32, mm
+    triangles : (triangles, 3) int32
+    deltas : (52, vertices, 3) float32, mm, in the order of `SHAPES`; a shape it lacks is all zero
+    colours : (vertices, 3) uint8, sRGB
+    landmarks : vertex index by name
+    name : what to call it on screen
+    """
+
+    neutral: npt.NDArray[np.float32]
+    triangles: npt.NDArray[np.int32]
+    deltas: npt.NDArray[np.float32]
+    colours: npt.NDArray[np.uint8]
+    landmarks: dict[str, int]
+    name: str = "Retake head"
+
+    @cached_property
+    def _moving(self) -> npt.NDArray[np.int64]:
+        return np.flatnonzero(np.abs(self.deltas).max(axis=(0, 2)) > 0)
+
+    @cached_property
+    def _basis(self) -> npt.NDArray[np.float32]:
+        """(52, 3 x moving vertices): one matrix product moves a face."""
+        return np.ascontiguousarray(self.deltas[:, self._moving].reshape(len(SHAPES), -1))
+
+    def vertices(self, weights: npt.ArrayLike) -> npt.NDArray[np.float32]:
+        """Return posed vertices, (vertices, 3) float32 in mm, for one frame of weights, (52,)."""
+        used = drawable(np.asarray(weights, np.float32))
+        posed = self.neutral.copy()
+        posed[self._moving] += (used @ self._basis).reshape(-1, 3)
+        return posed
+
+    def landmark_positions(self, names: Sequence[str]) -> tuple[Array, Array]:
+        """Return the neutral (n, 3) and the deltas (52, n, 3) of named landmarks, float64, mm."""
+        missing = [name for name in names if name not in self.landmarks]
+        if missing:
+            raise AssetError(f"The character {self.name!r} has no landmark {missing[0]!r}.")
+        vertices = [self.landmarks[name] for name in names]
+        return self.neutral[vertices].astype(np.float64), self.deltas[:, vertices].astype(np.float64)
+
+
+def drawable(weights: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    """Limit (52,) weights to what a mesh can show: 0..1, and lips that close no further than the jaw has opened.
+
+    mouthClose takes back the jaw's motion on the lips; without the jaw it would turn them inside out.
+    """
+    used = np.clip(weights, 0.0, 1.0)
+    used[_CLOSE] = min(used[_CLOSE], used[_JAW])
+    return used
+
+
+def load(path: Path = BUNDLED) -> Character:
+    """Read a character written by `save`; raises `AssetError` where the file is missing or damaged."""
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            names = [str(name) for name in stored["shape_names"]]
+            deltas = np.zeros((len(SHAPES), *stored["vertices"].shape), np.float32)
+            for name, delta in zip(names, stored["deltas"], strict=True):
+                deltas[SHAPE_INDEX[name]] = delta
+            pairs = zip(stored["landmark_names"], stored["landmark_vertices"], strict=True)
+            landmarks = {str(name): int(vertex) for name, vertex in pairs}
+            return Character(stored["vertices"], stored["faces"], deltas, stored["colours"], landmarks)
+    except (OSError, KeyError, ValueError) as error:
+        raise AssetError(
+            f"The character file {path.name} is missing or damaged.", "Rebuild it: retake build head."
+        ) from error
+
+
+@lru_cache(maxsize=1)
+def bundled() -> Character:
+    """Return the head that ships with the program; controls are measured on it whatever is shown."""
+    return load()

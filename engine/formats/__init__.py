@@ -1,0 +1,42 @@
+"""One module per format family, each with `read` and `write`; this registry picks by file ending."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from engine.errors import FormatError
+from engine.formats import livelink
+from engine.take import Take
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format a take can be read from and written to."""
+
+    title: str
+    endings: tuple[str, ...]
+    read: Callable[[Path], Take]
+    write: Callable[[Take, Path], None]
+
+
+FORMATS: tuple[Format, ...] = (Format("Live Link Face CSV", (".csv",), livelink.read, livelink.write),)
+
+
+def _format_of(path: Path) -> Format:
+    for entry in FORMATS:
+        if path.suffix.lower() in entry.endings:
+            return entry
+    known = ", ".join(f"{entry.title} ({'/'.join(entry.endings)})" for entry in FORMATS)
+    raise FormatError(f"{path.name} is not a kind of file that a take can be in.", f"Use one of: {known}.")
+
+
+def read_take(path: Path) -> Take:
+    """Read a take from any supported file; raises `FormatError` with one plain sentence."""
+    return _format_of(path).read(path)
+
+
+def write_take(take: Take, path: Path) -> None:
+    """Write a take to any supported file; an existing file is replaced whole or left as it was."""
+    _format_of(path).write(take, path)

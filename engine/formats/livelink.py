@@ -1,0 +1,342 @@
+"""Live Link Face CSV: what the iPhone app records, and what generators imitate."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.errors import FormatError
+from engine.formats.atomic import write_bytes
+from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take
+
+ROTATIONS = (
+    "HeadYaw",
+    "HeadPitch",
+    "HeadRoll",
+    *(f"{s}Eye{a}" for s in ("Left", "Right") for a in ("Yaw", "Pitch", "Roll")),
+)
+DEFAULT_HEADER = ("Timecode", "BlendshapeCount", *(f"{name[0].upper()}{name[1:]}" for name in SHAPES), *ROTATIONS)
+# Recorded under each other's names by the app (measured: same-side asymmetries correlate negatively without the swap).
+SWAPPED = (("mouthLeft", "mouthRight"), ("jawLeft", "jawRight"))
+STANDARD_FPS = (24.0, 25.0, 30000 / 1001, 30.0, 48.0, 50.0, 60000 / 1001, 60.0, 120.0)
+TICKS_PER_SECOND = 60.0  # the frame field counts sixtieths of a second, even in a 30 Hz take
+DAY_S = 86400.0
+MAX_COLUMNS = 1024
+MAX_HEADER_BYTES = 64 * 1024
+MAX_INSERTED_SHARE = 1.0  # more missed frames than recorded ones means that the clock is not to be believed
+FALLBACK_FPS = 30.0
+EXPECTED = "Retake reads the CSV files that Live Link Face records."
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """How a file was written, so that an untouched take is written back byte for byte.
+
+    Attributes
+    ----------
+    header : column names as the file spells them
+    timecodes : one text per row of the file
+    rows : (rows,) int, the take's frame that each row of the file became
+    values : (rows, columns) float64 as recorded, lost rows zero
+    decimals : digits behind the point
+    newline, swapped : line ending; whether left and right of mouth and jaw were exchanged on import
+    """
+
+    header: tuple[str, ...]
+    timecodes: tuple[bytes, ...]
+    rows: npt.NDArray[np.int64]
+    values: Array
+    lost: Mask
+    decimals: int = 10
+    newline: bytes = b"\n"
+    swapped: bool = True
+
+
+@dataclass
+class _Clock:
+    """Frame rate and frame number of each row, with what the user should hear about it."""
+
+    fps: float
+    rows: npt.NDArray[np.int64]
+    notices: list[str] = field(default_factory=list)
+
+
+def read(path: Path, *, fps: float | None = None, swap: bool = True) -> Take:
+    """Read a Live Link Face CSV.
+
+    Parameters
+    ----------
+    path : the file
+    fps : frame rate to use instead of the one its timecodes tell
+    swap : exchange left and right of mouth and jaw, which the app records under each other's names
+
+    Raises
+    ------
+    FormatError : with file, row and column, where the file is not such a take
+    """
+    header, lines, newline = _lines(path)
+    columns = _columns(header, path)
+    timecodes, values, lost = _table(lines, len(header), path)
+    if lost.all():
+        raise FormatError(f"{path.name} holds no frame with a face.", "The tracker lost the face in every row.")
+    _require_finite(values, header, path)
+    clock = _clock(timecodes, fps)
+    take_weights, take_lost, rotations = _resample(values, lost, clock, columns, swap=swap)
+    decimals = _decimals(lines, lost)
+    origin = Origin(tuple(header), tuple(timecodes), clock.rows, values, lost, decimals, newline, swap)
+    take = Take(
+        weights=take_weights,
+        fps=clock.fps,
+        lost=take_lost,
+        rotations=rotations,
+        name=path.name,
+        notices=tuple(clock.notices),
+        start_s=_seconds(timecodes[0]) or 0.0,
+        origin=origin,
+    )
+    suspicion = _side_suspicion(take)
+    return take if suspicion is None else replace(take, notices=(*take.notices, suspicion))
+
+
+def write(take: Take, path: Path) -> None:
+    """Write a take as Live Link Face CSV, in the convention of the file it came from where there was one.
+
+    Frames that the source file had missed stay missing and values that were not edited are written as they were read,
+    so that reading and writing a take changes no byte.
+    """
+    write_bytes(path, _encode(take))
+
+
+def _encode(take: Take) -> Iterator[bytes]:
+    origin = take.origin if isinstance(take.origin, Origin) and _fits(take, take.origin) else _new_origin(take)
+    columns = _columns(list(origin.header), Path(take.name))
+    values = origin.values.copy()
+    source = take.weights[origin.rows]
+    before, _, _ = _resample(origin.values, origin.lost, _Clock(take.fps, origin.rows), columns, swap=origin.swapped)
+    changed = source != before[origin.rows]
+    for shape, column in columns.items():
+        if shape in SHAPE_INDEX:
+            index = SHAPE_INDEX[_recorded_name(shape, swapped=origin.swapped)]
+            values[:, column] = np.where(changed[:, index], source[:, index], values[:, column])
+    lost = origin.lost & take.lost[origin.rows]
+    yield ",".join(origin.header).encode() + origin.newline
+    count = len(origin.header) - 2
+    row_format = ",".join([f"%.{origin.decimals}f"] * count)
+    for timecode, row, is_lost in zip(origin.timecodes, values.tolist(), lost, strict=True):
+        body = b"0" if is_lost else f"{count},{row_format % tuple(row)}".encode()
+        yield timecode + b"," + body + origin.newline
+
+
+def _fits(take: Take, origin: Origin) -> bool:
+    return len(origin.rows) > 0 and int(origin.rows[-1]) == len(take) - 1
+
+
+def _new_origin(take: Take) -> Origin:
+    frames = np.arange(len(take))
+    ticks = np.round((take.start_s + frames / take.fps) * TICKS_PER_SECOND, 3)
+    timecodes = tuple(_format_timecode(float(tick)) for tick in ticks)
+    values = np.zeros((len(take), len(DEFAULT_HEADER) - 2))
+    for index, name in enumerate(SHAPES):
+        values[:, index] = take.weights[:, SHAPE_INDEX[_recorded_name(name, swapped=True)]]
+    values[:, len(SHAPES) :] = take.rotations
+    return Origin(DEFAULT_HEADER, timecodes, frames, values, take.lost)
+
+
+def _format_timecode(ticks: float) -> bytes:
+    whole, part = divmod(ticks % (DAY_S * TICKS_PER_SECOND), TICKS_PER_SECOND)
+    second = int(whole)
+    return f"{second // 3600:02d}:{second // 60 % 60:02d}:{second % 60:02d}:{part:06.3f}".encode()
+
+
+def _recorded_name(shape: str, *, swapped: bool) -> str:
+    """Return the shape whose values stand in the file under the name `shape`."""
+    if swapped:
+        for left, right in SWAPPED:
+            if shape in (left, right):
+                return right if shape == left else left
+    return shape
+
+
+def _lines(path: Path) -> tuple[list[str], list[bytes], bytes]:
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+    if not content.strip():
+        raise FormatError(f"{path.name} is empty.", EXPECTED)
+    content = content.removeprefix(b"\xef\xbb\xbf")
+    newline = b"\r\n" if b"\r\n" in content[:MAX_HEADER_BYTES] else b"\n"
+    first, _, rest = content.partition(b"\n")
+    if len(first) > MAX_HEADER_BYTES or first.count(b",") >= MAX_COLUMNS:
+        raise FormatError(f"{path.name} has too many columns in its first row.", EXPECTED)
+    try:
+        header = [cell.strip() for cell in first.decode("utf-8").split(",")]
+    except UnicodeDecodeError:
+        raise FormatError(f"{path.name} is not a text file.", EXPECTED) from None
+    if "\x00" in header[0]:
+        raise FormatError(f"{path.name} is not a text file.", EXPECTED)
+    lines = rest.split(b"\n")
+    while lines and not lines[-1].strip():
+        lines.pop()
+    if newline == b"\r\n":
+        lines = [line.rstrip(b"\r") for line in lines]
+    return header, lines, newline
+
+
+def _columns(header: list[str], path: Path) -> dict[str, int]:
+    """Map our shape and rotation names to value columns (counted from the third cell); names, never positions."""
+    if [cell.lower() for cell in header[:2]] != ["timecode", "blendshapecount"]:
+        raise FormatError(f"{path.name} does not begin with the header of a Live Link Face take.", EXPECTED)
+    found = {cell.lower(): index for index, cell in enumerate(header[2:])}
+    if len(found) != len(header) - 2:
+        raise FormatError(f"{path.name} names a column twice in its first row.")
+    columns = {name: found[name.lower()] for name in (*SHAPES, *ROTATIONS) if name.lower() in found}
+    missing = [name for name in SHAPES if name not in columns and name != "tongueOut"]
+    if missing:
+        raise FormatError(f"{path.name} lacks the column {missing[0]} ({len(missing)} shapes are missing).", EXPECTED)
+    return columns
+
+
+def _table(lines: list[bytes], cells: int, path: Path) -> tuple[list[bytes], Array, Mask]:
+    """Split rows into timecodes and (rows, cells - 2) values; a row of two cells with count 0 is a lost frame."""
+    if not lines:
+        raise FormatError(f"{path.name} has a header but no frames.")
+    timecodes: list[bytes] = []
+    bodies: list[bytes] = []
+    lost = np.zeros(len(lines), bool)
+    for index, line in enumerate(lines):
+        parts = line.split(b",", 2)
+        timecodes.append(parts[0].strip())
+        if len(parts) == 2 and parts[1].strip() == b"0":
+            lost[index] = True
+        elif len(parts) == 3 and parts[2].count(b",") == cells - 3:
+            bodies.append(parts[2])
+        else:
+            found = line.count(b",") + 1
+            raise FormatError(
+                f"{path.name} has {found} cells in row {index + 2} where its header has {cells}.",
+                "The file may be cut off or damaged." if index == len(lines) - 1 else "",
+            )
+    values = np.zeros((len(lines), cells - 2))
+    if bodies:
+        values[~lost] = _floats(bodies, np.flatnonzero(~lost) + 2, cells - 2, path)
+    return timecodes, values, lost
+
+
+def _floats(bodies: list[bytes], row_numbers: npt.NDArray[np.int64], count: int, path: Path) -> Array:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            flat = np.fromstring(b",".join(bodies), dtype=np.float64, sep=",")
+            return np.asarray(flat.reshape(len(bodies), count))
+        except (ValueError, DeprecationWarning):
+            pass
+    for body, row in zip(bodies, row_numbers, strict=True):  # the slow way finds the cell to blame
+        for column, cell in enumerate(body.split(b",")):
+            try:
+                float(cell)
+            except ValueError:
+                shown = cell[:20].decode("utf-8", "replace")
+                raise FormatError(
+                    f"{path.name} has {shown!r} for a number in row {row}, column {column + 3}."
+                ) from None
+    raise FormatError(f"{path.name} could not be read as numbers.", EXPECTED)
+
+
+def _require_finite(values: Array, header: list[str], path: Path) -> None:
+    bad = np.argwhere(~np.isfinite(values))
+    if len(bad):
+        row, column = bad[0]
+        raise FormatError(
+            f"{path.name} has a value that is not a finite number in row {row + 2}, column {column + 3} "
+            f"({header[column + 2][:40]})."
+        )
+
+
+def _seconds(timecode: bytes) -> float | None:
+    parts = timecode.split(b":")
+    try:
+        hours, minutes, seconds, ticks = (float(part) for part in parts)
+    except ValueError:
+        return None
+    time_s = 3600 * hours + 60 * minutes + seconds + ticks / TICKS_PER_SECOND
+    return time_s if np.isfinite(time_s) else None
+
+
+def _clock(timecodes: list[bytes], fps: float | None) -> _Clock:
+    rows = np.arange(len(timecodes))
+    if fps is not None:
+        return _Clock(fps, rows)
+    if len(timecodes) == 1:
+        return _Clock(FALLBACK_FPS, rows, [f"One frame has no rate: taken as {FALLBACK_FPS:g} fps."])
+    times = [_seconds(timecode) for timecode in timecodes]
+    fallback = _Clock(FALLBACK_FPS, rows, [f"The timecodes make no sense: taken as {FALLBACK_FPS:g} fps, row by row."])
+    if any(time is None for time in times):
+        return fallback
+    steps = np.diff(np.array(times, float))
+    steps = np.where(steps < -DAY_S / 2, steps + DAY_S, steps)  # past midnight
+    typical = float(np.median(steps))
+    if typical <= 1 / 1000 or typical > 0.5 or (steps <= 0).any():
+        return fallback
+    single = steps[np.abs(steps / typical - 1) < 0.5]
+    rate = 1 / float(single.mean())
+    increments = np.maximum(1, np.round(steps * rate)).astype(np.int64)
+    inserted = int(increments.sum() - len(increments))
+    if inserted > MAX_INSERTED_SHARE * len(timecodes):
+        return fallback
+    frame = np.concatenate([[0], np.cumsum(increments)])
+    notices = [f"{inserted} missed frames were filled in by interpolation."] if inserted else []
+    return _Clock(_snap(rate), frame, notices)
+
+
+def _snap(rate: float) -> float:
+    nearest = min(STANDARD_FPS, key=lambda standard: abs(standard - rate))
+    return nearest if abs(nearest / rate - 1) < 5e-4 else rate
+
+
+def _resample(
+    values: Array, lost: Mask, clock: _Clock, columns: dict[str, int], *, swap: bool
+) -> tuple[Array, Mask, Array]:
+    """Put rows on the constant clock; missed and lost frames are interpolated, and lost ones marked."""
+    frames = int(clock.rows[-1]) + 1
+    weights = np.zeros((frames, len(SHAPES)))
+    rotations = np.zeros((frames, len(ROTATIONS)))
+    grid, seen = np.arange(frames), clock.rows[~lost]
+    whole = frames == len(values) and not lost.any()
+    for name, column in columns.items():
+        recorded = values[~lost, column]
+        curve = recorded if whole else np.interp(grid, seen, recorded)
+        if name in SHAPE_INDEX:
+            weights[:, SHAPE_INDEX[_recorded_name(name, swapped=swap)]] = curve
+        else:
+            rotations[:, ROTATIONS.index(name)] = curve
+    take_lost = np.zeros(frames, bool)
+    take_lost[clock.rows[lost]] = True
+    gaps = np.interp(grid, clock.rows, lost.astype(float)) if not whole else np.zeros(frames)
+    return weights, take_lost | (gaps == 1.0), rotations
+
+
+def _decimals(lines: list[bytes], lost: Mask) -> int:
+    cells = lines[int(np.flatnonzero(~lost)[0])].split(b",")
+    digits = [len(cell.strip().partition(b".")[2]) for cell in cells[2:]]
+    return min(max(digits, default=10), 17) or 10
+
+
+def _side_suspicion(take: Take) -> str | None:
+    """Say so when the mouth still leans against its own side: the swap was wrong for this file, or missing."""
+    side = take.curve("mouthLeft") - take.curve("mouthRight")
+    if side.std() < 0.02:
+        return None
+    correlations = []
+    for pair in ("mouthDimple", "mouthStretch", "cheekSquint"):
+        other = take.curve(f"{pair}Left") - take.curve(f"{pair}Right")
+        if other.std() > 0.005:
+            correlations.append(float(np.corrcoef(side, other)[0, 1]))
+    if len(correlations) >= 2 and max(correlations) < -0.3:
+        return "Left and right of the mouth look exchanged: try the import without the swap."
+    return None

@@ -1,0 +1,1 @@
+"""Synthetic performances and tracker faults: material for training, tests and the bundled demo take."""

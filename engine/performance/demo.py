@@ -1,0 +1,23 @@
+"""The bundled demo take: "Maybe we should move. I have been happy before. Watch me smile.\""""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from engine.formats import write_take
+from engine.performance.performer import Script, perform
+
+BUNDLED = Path(__file__).parent.parent.parent / "assets" / "takes" / "demo.csv"
+PHONES = (
+    "SIL SIL M EY1 B IY W IY SH UH D M UW1 V SIL SIL AY HH AE V B IH N HH AE1 P IY B IH F AO1 R SIL SIL SIL "
+    "W AA1 CH M IY S M AY1 L SIL SIL SIL SIL SIL DH AH M UW1 V IY Z AA R P R IH T IY1 G UH D SIL SIL"
+)
+SCRIPT = Script(
+    phones=tuple(PHONES.split()), smiles=((5.2, 7.6),), blinks_per_min=24.0, tempo=0.85, seed=7, lost_s=((8.4, 9.2),)
+)
+
+
+def build(path: Path = BUNDLED) -> None:
+    """Write the demo take; the same script gives the same file."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_take(perform(SCRIPT, name="demo"), path)
