@@ -68,6 +68,11 @@ class Measurer:
         self._rest = ends - starts  # (controls, 3)
         self._basis = (end_deltas - start_deltas).reshape(len(SHAPES), -1)  # (52, controls * 3)
 
+    @property
+    def linear(self) -> tuple[Array, Array]:
+        """Return endpoint differences at rest, (controls, 3), and their basis, (52, controls * 3), both in mm."""
+        return self._rest, self._basis
+
     def _vectors(self, weights: Array) -> Array:
         moved = _limited(weights) @ self._basis
         return np.asarray(self._rest + moved.reshape(len(weights), -1, 3))

@@ -1,0 +1,1 @@
+"""What every network shares: checkpoints with their cards, windows, and resampling to the model rate."""

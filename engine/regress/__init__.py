@@ -1,0 +1,1 @@
+"""From control curves to a whole face: U-Net regressor and stacked denoising autoencoder (BSBS19)."""

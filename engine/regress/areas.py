@@ -1,0 +1,42 @@
+"""The three areas of the face that move with little correlation; each has its own networks (BSBS19 section 4.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.controls import CONTROL_INDEX
+from engine.take import SHAPES
+
+_LIDS = ("eyeBlink", "eyeSquint", "eyeWide", "eyeLook")
+_UPPER = ("brow", "cheekSquint", "noseSneer")
+
+
+@dataclass(frozen=True)
+class Area:
+    """Shapes that one network makes, and the controls it makes them from."""
+
+    name: str
+    controls: tuple[str, ...]
+    prefixes: tuple[str, ...]
+    needs_whole_face: bool
+
+    @property
+    def control_columns(self) -> npt.NDArray[np.int64]:
+        """Columns of the control curves that the network reads."""
+        return np.array([CONTROL_INDEX[name] for name in self.controls])
+
+    @property
+    def shape_columns(self) -> npt.NDArray[np.int64]:
+        """Columns of the weights that the network makes."""
+        return np.array([index for index, name in enumerate(SHAPES) if name.startswith(self.prefixes)])
+
+
+_MOUTH = ("lips_vertical", "lips_horizontal", "corner_right", "corner_left", "nose_to_lip", "chin_to_lip")
+AREAS: tuple[Area, ...] = (
+    Area("lower", _MOUTH, ("jaw", "mouth", "cheekPuff", "tongue"), False),
+    Area("upper", ("eyelid_right", "eyelid_left", "corner_right", "corner_left", "nose_to_lip"), _UPPER, True),
+    Area("eyelids", ("eyelid_right", "eyelid_left"), _LIDS, True),
+)

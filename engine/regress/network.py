@@ -1,0 +1,90 @@
+"""The two networks of BSBS19 figure 5: a resolution-preserving U-Net, used as regressor and as autoencoder."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+# One U-Net feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 frames through its convolutions and up to 3 through pooling; two are stacked.
+REACH = 48
+ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
+
+
+@dataclass(frozen=True)
+class UNetConfig:
+    """Widths of the three resolutions, and what goes in and comes out."""
+
+    inputs: int
+    outputs: int
+    widths: tuple[int, int, int] = (32, 64, 128)
+
+
+def _block(inputs: int, outputs: int) -> nn.Sequential:
+    return nn.Sequential(
+        nn.Conv1d(inputs, outputs, 3, padding=1), nn.ELU(), nn.Conv1d(outputs, outputs, 3, padding=1), nn.ELU()
+    )
+
+
+class UNet(nn.Module):
+    """A linear map frame by frame plus a 1-D U-Net over time: (batch, inputs, frames) -> (batch, outputs, frames).
+
+    The paper's batch normalisation is left out: under salt-and-pepper its statistics drift and ruin closures. Inputs
+    are standardised by constants instead, and the linear part starts as ridge regression.
+    """
+
+    mean: Tensor
+    scale: Tensor
+
+    def __init__(self, config: UNetConfig) -> None:
+        super().__init__()
+        narrow, middle, wide = config.widths
+        self.config = config
+        self.linear = nn.Conv1d(config.inputs, config.outputs, 1)
+        self.down1, self.down2 = _block(config.inputs, narrow), _block(narrow, middle)
+        self.bottom = _block(middle, wide)
+        self.up2, self.up1 = _block(wide + middle, middle), _block(middle + narrow, narrow)
+        self.last = nn.Conv1d(narrow, config.outputs, 1)
+        nn.init.zeros_(self.last.weight)
+        nn.init.zeros_(self.last.bias)  # type: ignore[arg-type]
+        self.pool, self.grow = nn.MaxPool1d(2), nn.Upsample(scale_factor=2, mode="nearest")
+        self.register_buffer("mean", torch.zeros(1, config.inputs, 1))
+        self.register_buffer("scale", torch.ones(1, config.inputs, 1))
+
+    def forward(self, curves: Tensor) -> Tensor:
+        """Map curves; frames must be a multiple of `ALIGNMENT`."""
+        x = (curves - self.mean) / self.scale
+        fine = self.down1(x)  # (batch, narrow, frames)
+        half = self.down2(self.pool(fine))  # (batch, middle, frames / 2)
+        deep = self.bottom(self.pool(half))  # (batch, wide, frames / 4)
+        half = self.up2(torch.cat([self.grow(deep), half], dim=1))
+        fine = self.up1(torch.cat([self.grow(half), fine], dim=1))
+        mapped: Tensor = self.linear(x) + self.last(fine)
+        return mapped
+
+
+class AreaNetwork(nn.Module):
+    """Autoencoder on regressor for one area: controls in mm -> weights; `full=False` stops at the regressor."""
+
+    def __init__(self, regressor: UNetConfig, autoencoder: UNetConfig) -> None:
+        super().__init__()
+        self.regressor, self.autoencoder = UNet(regressor), UNet(autoencoder)
+
+    def forward(self, controls: Tensor, *, full: bool = True) -> Tensor:
+        """Return weights, (batch, shapes, frames), of controls, (batch, controls, frames) in mm."""
+        weights: Tensor = self.regressor(controls)
+        return self.autoencoder(weights) if full else weights
+
+    def config(self) -> dict[str, Any]:
+        """Return what rebuilds this module."""
+        return {"regressor": asdict(self.regressor.config), "autoencoder": asdict(self.autoencoder.config)}
+
+
+def from_config(config: dict[str, Any]) -> AreaNetwork:
+    """Build a module from what `AreaNetwork.config` returned."""
+    parts = [
+        UNetConfig(**{**config[key], "widths": tuple(config[key]["widths"])}) for key in ("regressor", "autoencoder")
+    ]
+    return AreaNetwork(*parts)
