@@ -1,0 +1,40 @@
+"""The command line: one module per family of verbs, each with `register(app)`."""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from app.cli import tables, takes, training
+from engine.errors import EngineError
+
+FAMILIES = (takes, tables, training)
+
+
+def build() -> typer.Typer:
+    """Return the whole command line."""
+    app = typer.Typer(
+        name="retake",
+        help="Edit a facial performance without reshooting it.",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+    )
+    for family in FAMILIES:
+        family.register(app)
+    return app
+
+
+def run(arguments: list[str]) -> int:
+    """Run one command; returns its exit code, 2 with one sentence on the error stream for what the user can mend."""
+    try:
+        build()(args=arguments, prog_name="retake")
+    except EngineError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+    except SystemExit as done:
+        return done.code if isinstance(done.code, int) else 1
+    return 0

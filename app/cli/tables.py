@@ -1,0 +1,67 @@
+"""`retake evaluate` and `retake bench`: tables of figures."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from engine import evaluate as tables
+from engine.errors import EngineError
+
+errors = Console(stderr=True)
+
+
+def show(title: str, rows: Sequence[dict[str, Any]], *, as_json: bool) -> None:
+    """Print rows as one JSON object or as a table to read."""
+    if as_json:
+        print(json.dumps({"table": title, "rows": rows}))
+        return
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    shown = Table(*columns, title=title)
+    for row in rows:
+        shown.add_row(*(_cell(row.get(name)) for name in columns))
+    Console().print(shown)
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return "" if value is None else str(value)
+
+
+def evaluate(
+    name: Annotated[str, typer.Argument(help=f"Which table: {', '.join(tables.TABLES)}.")],
+    data: Annotated[Path | None, typer.Option(help="A folder of takes instead of the test split.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    figures: Annotated[Path | None, typer.Option(help="Draw the figures into this folder.")] = None,
+) -> None:
+    """Measure a method against its baselines."""
+    if data is not None and not data.is_dir():
+        raise EngineError(f"{data} is not a folder.", "Name a folder of takes with --data.")
+
+    def report(line: str) -> None:
+        errors.print(line, style="dim", highlight=False)
+
+    if figures is not None:
+        for path in tables.figures(name, data, figures, report):
+            report(f"wrote {path}")
+    show(name, tables.table(name, data, report), as_json=as_json)
+
+
+def bench(as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False) -> None:
+    """Measure how fast everything is on this machine, each figure beside its goal."""
+    from app import bench as benches
+
+    show("bench", benches.measure(lambda line: errors.print(line, style="dim")), as_json=as_json)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(evaluate)
+    app.command()(bench)

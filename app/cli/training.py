@@ -1,0 +1,52 @@
+"""`retake train` and `retake build`: making the networks and the bundled assets anew."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from engine.errors import EngineError
+
+NETWORKS = ("regress",)
+ASSETS = ("demo", "head")
+
+
+def train(
+    name: Annotated[str, typer.Argument(help=f"Which network: {', '.join(NETWORKS)}.")],
+    data: Annotated[Path | None, typer.Option(help="A folder of takes to train on; RETAKE_DATA otherwise.")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="Where models and cards are written.")] = None,
+) -> None:
+    """Train a network; stop it at any time and run it again to go on."""
+    import importlib
+
+    from engine.corpus import data_folder
+    from engine.models.checkpoint import MODELS
+
+    if name not in NETWORKS:
+        raise EngineError(f"There is no network called {name!r}.", f"Networks are: {', '.join(NETWORKS)}.")
+    console = Console()
+    trainer = importlib.import_module(f"engine.{name}.train")
+    trainer.train(data or data_folder(), out or MODELS, report=lambda line: console.print(line, highlight=False))
+
+
+def build(name: Annotated[str, typer.Argument(help=f"Which asset: {', '.join(ASSETS)}.")]) -> None:
+    """Rebuild a bundled asset: the head, or the demo take."""
+    if name == "demo":
+        from engine.performance import demo
+
+        demo.build()
+    elif name == "head":
+        from engine.modelling import head
+
+        head.build()
+    else:
+        raise EngineError(f"There is no asset called {name!r}.", f"Assets are: {', '.join(ASSETS)}.")
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(train)
+    app.command()(build)

@@ -1,0 +1,40 @@
+"""Tables of figures: each method against its baselines, on the test split or on any folder of takes."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from engine.errors import EngineError
+
+Row = dict[str, Any]  # "method" or "name", then the metrics as plain numbers
+Report = Callable[[str], None]
+
+# Each is a module of this package with `table(data, report)` and, where the paper draws it, `figures(data, folder, report)`.
+TABLES: dict[str, str] = {
+    "regress": "Control curves to weights: mean squared error, closures (BSBS19 table 1, figure 8)",
+}
+
+
+def table(name: str, data: Path | None, report: Report) -> list[Row]:
+    """Return the rows of a table; `data` None is the test split. Raises `EngineError` for a name that is not in TABLES."""
+    rows: list[Row] = _module(name).table(data, report)
+    return rows
+
+
+def figures(name: str, data: Path | None, folder: Path, report: Report) -> list[Path]:
+    """Draw a table's figures into a folder and return their paths; raises `EngineError` where it has none."""
+    module = _module(name)
+    if not hasattr(module, "figures"):
+        raise EngineError(f"The table {name!r} has no figures.")
+    folder.mkdir(parents=True, exist_ok=True)
+    paths: list[Path] = module.figures(data, folder, report)
+    return paths
+
+
+def _module(name: str) -> Any:
+    if name not in TABLES:
+        raise EngineError(f"There is no table called {name!r}.", f"Tables are: {', '.join(TABLES)}.")
+    return importlib.import_module(f"engine.evaluate.{name}")
