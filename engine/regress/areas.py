@@ -10,13 +10,16 @@ import numpy.typing as npt
 from engine.controls import CONTROL_INDEX
 from engine.take import SHAPES
 
-_LIDS = ("eyeBlink", "eyeSquint", "eyeWide", "eyeLook")
 _UPPER = ("brow", "cheekSquint", "noseSneer")
 
 
 @dataclass(frozen=True)
 class Area:
-    """Shapes that one network makes, and the controls it makes them from."""
+    """Shapes that one network makes, and the controls it makes them from.
+
+    Gaze belongs to no area here: two lid distances cannot tell where the eyes look, so an edit of the lids leaves
+    gaze as it was recorded.
+    """
 
     name: str
     controls: tuple[str, ...]
@@ -38,5 +41,5 @@ _MOUTH = ("lips_vertical", "lips_horizontal", "corner_right", "corner_left", "no
 AREAS: tuple[Area, ...] = (
     Area("lower", _MOUTH, ("jaw", "mouth", "cheekPuff", "tongue"), False),
     Area("upper", ("eyelid_right", "eyelid_left", "corner_right", "corner_left", "nose_to_lip"), _UPPER, True),
-    Area("eyelids", ("eyelid_right", "eyelid_left"), _LIDS, True),
+    Area("eyelids", ("eyelid_right", "eyelid_left"), ("eyeBlink", "eyeSquint", "eyeWide"), True),
 )
