@@ -21,7 +21,10 @@ EYE_SHAPES = np.array([name.startswith("eye") for name in SHAPES])
 LOWER_SHAPES = np.array([name.startswith(("jaw", "mouth", "cheekPuff", "noseSneer")) for name in SHAPES])
 FREE = {"lower": LOWER_SHAPES, "eyelids": EYE_SHAPES & np.array(["Look" not in name for name in SHAPES])}
 FEATHER_S = 0.5  # how far beyond the changed frames a face may still move, easing into the original
-CONTACT_MM, CONTACT_FROM_MM = 1.0, 4.0  # asked this close, lips or lids are meant to touch; it begins to count from there
+CONTACT_MM, CONTACT_FROM_MM = (
+    1.0,
+    4.0,
+)  # asked this close, lips or lids are meant to touch; it begins to count from there
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +50,7 @@ class Patch:
 
     def apply(self, take: Take) -> Take:
         """Return the take with these weights in place."""
-        weights = take.weights.copy()
-        weights[self.start : self.stop] = self.weights
-        return take.with_weights(weights)
+        return take.with_rows(self.start, self.weights)
 
 
 def parse_frames(text: str, take: Take) -> tuple[int, int]:
@@ -100,12 +101,13 @@ class Dragger:
 
     Parameters
     ----------
-    take : what is edited; its curves are measured once
+    take : what is edited
+    controls : its curves, (frames, 8) mm, if they have been measured already
     """
 
-    def __init__(self, take: Take, regressor: infer.Regressor | None = None) -> None:
+    def __init__(self, take: Take, controls: Array | None = None, regressor: infer.Regressor | None = None) -> None:
         self.take = take
-        self.controls = bundled_measurer().measure(take.weights)
+        self.controls = bundled_measurer().measure(take.weights) if controls is None else controls
         self._regressor = regressor or infer.bundled()
         self._known: tuple[tuple[int, int], Array] | None = None
 
