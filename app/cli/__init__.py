@@ -26,6 +26,11 @@ def build() -> typer.Typer:
     return app
 
 
+def names() -> set[str]:
+    """Return the names of all commands."""
+    return {command.name or command.callback.__name__ for command in build().registered_commands if command.callback}
+
+
 def run(arguments: list[str]) -> int:
     """Run one command; returns its exit code, 2 with one sentence on the error stream for what the user can mend."""
     try:
