@@ -110,4 +110,11 @@ def _mean(rates: Array) -> float | None:
     return sum(known) / len(known) if known else None
 
 
+def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
+    """Draw lip and lid curves, closure rates, and requests with and without the autoencoder (figures 6, 8, 9)."""
+    from engine.evaluate import regress_figures
+
+    return regress_figures.draw(data, folder, report)
+
+
 __all__ = ["EYES_MM", "MOUTH_MM", "measured_closures", "methods", "pieces_to_measure", "played", "table"]

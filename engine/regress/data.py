@@ -13,6 +13,7 @@ from torch import Tensor
 
 from engine.controls import bundled_measurer
 from engine.corpus import Piece, whole_faces
+from engine.extended import bundled_extended
 from engine.models.windows import windows
 from engine.performance.augment import Levers, augment
 from engine.performance.corpus import synthetic_performances
@@ -29,7 +30,7 @@ class Windows:
 
     Attributes
     ----------
-    controls : (windows, 8, frames) float32, mm
+    controls : (windows, 14, frames) float32, the eight controls in mm and the extended ones
     weights : (windows, 52, frames) float32
     """
 
@@ -40,7 +41,9 @@ class Windows:
 def cut(pieces: Sequence[Array], *, length: int, overlap: float) -> Windows:
     """Cut pieces, (frames, 52) each, into windows and measure their controls."""
     weights = np.concatenate([windows(piece, length=length, overlap=overlap) for piece in pieces])
-    controls = bundled_measurer().measure(weights.reshape(-1, len(SHAPES))).reshape(*weights.shape[:2], -1)
+    flat = weights.reshape(-1, len(SHAPES))
+    measured = np.concatenate([bundled_measurer().measure(flat), bundled_extended().measure(flat)], axis=1)
+    controls = measured.reshape(*weights.shape[:2], -1)
     return Windows(*(torch.tensor(x.transpose(0, 2, 1), dtype=torch.float32) for x in (controls, weights)))
 
 

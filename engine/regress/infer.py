@@ -8,14 +8,15 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from engine.controls import CONTROLS
 from engine.models.checkpoint import MODELS, load_model
-from engine.regress.areas import AREAS
+from engine.regress.areas import AREAS, EXTENDED_AREAS
 from engine.regress.network import ALIGNMENT, REACH, AreaNetwork, from_config
 from engine.take import SHAPES, Array
 
 
 class Regressor:
-    """Controls to weights with the three areas' networks.
+    """Controls to weights with the networks of each area; those of the extended controls run only where these are given.
 
     Parameters
     ----------
@@ -28,15 +29,16 @@ class Regressor:
             network.eval()
 
     def infer(self, controls: Array, *, full: bool = True) -> Array:
-        """Return weights, (frames, 52) float64 and not clamped, of controls, (frames, 8) in mm.
+        """Return weights, (frames, 52) float64 and not clamped, of controls, (frames, 8), or 14 with the extended ones.
 
-        The last frame is held up to a multiple of the networks' pooling; `full=False` leaves the autoencoder out.
+        The last frame is held up to a multiple of the networks' pooling; `full=False` leaves the autoencoder out. Shapes
+        that no given control speaks of, gaze without its controls, are zero.
         """
         frames = len(controls)
         held = np.pad(controls, ((0, -frames % ALIGNMENT), (0, 0)), mode="edge")
         weights = np.zeros((frames, len(SHAPES)))
         with torch.inference_mode():
-            for area in AREAS:
+            for area in AREAS if controls.shape[1] == len(CONTROLS) else (*AREAS, *EXTENDED_AREAS):
                 columns = torch.from_numpy(held[:, area.control_columns].T.astype(np.float32))
                 made = self._networks[area.name](columns[None], full=full)[0]
                 weights[:, area.shape_columns] = made.numpy().T[:frames]
@@ -50,9 +52,9 @@ class Regressor:
 
 
 def load(folder: Path = MODELS) -> Regressor:
-    """Read the three areas' networks; raises `AssetError` where one is missing or damaged."""
+    """Read every area's networks; raises `AssetError` where one is missing or damaged."""
     networks = {}
-    for area in AREAS:
+    for area in (*AREAS, *EXTENDED_AREAS):
         tensors, config = load_model(folder / f"regress_{area.name}.safetensors", kind="regress")
         network = from_config(config)
         network.load_state_dict(tensors)

@@ -14,8 +14,8 @@ def salt_and_pepper(controls: Tensor, low: Tensor, high: Tensor, share: float, r
 
 
 def exaggerated(controls: Tensor, rest: Tensor, factor: Tensor | float) -> Tensor:
-    """Scale the departure of controls from the neutral face's, (1, controls, 1) in mm; no distance falls below zero."""
-    return (rest + factor * (controls - rest)).clamp(min=0.0)
+    """Scale the departure of controls, (batch, controls, frames), from the neutral face's, (1, controls, 1)."""
+    return rest + factor * (controls - rest)
 
 
 def contradictory(controls: Tensor, rng: torch.Generator) -> Tensor:

@@ -15,12 +15,13 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from engine.controls import bundled_measurer
+from engine.controls import CONTROLS, bundled_measurer
 from engine.corpus import Piece, split, whole_faces
+from engine.extended import bundled_extended
 from engine.models.checkpoint import MODELS, Card, commit, save_card, save_model
 from engine.performance.augment import Levers
 from engine.regress import partial
-from engine.regress.areas import AREAS, Area
+from engine.regress.areas import AREAS, EXTENDED_AREAS, Area
 from engine.regress.data import NearestFaces, Source, Windows, cut, source
 from engine.regress.losses import Distances, distance_error
 from engine.regress.network import AreaNetwork, UNet, UNetConfig
@@ -97,8 +98,9 @@ class AreaTrainer:
         self.network = AreaNetwork(UNetConfig(inputs, outputs, widths), UNetConfig(outputs, outputs, widths))
         first = material.first
         _ridge(self.network, first.controls[:, self._controls], first.weights[:, self._columns])
-        neutral = bundled_measurer().measure(np.zeros((1, len(SHAPES))))[0, area.control_columns]
-        self._rest = torch.tensor(neutral, dtype=torch.float32)[None, :, None]
+        neutral = np.zeros((1, len(SHAPES)))
+        rest = np.concatenate([bundled_measurer().measure(neutral), bundled_extended().measure(neutral)], axis=1)
+        self._rest = torch.tensor(rest[0, area.control_columns], dtype=torch.float32)[None, :, None]
         self._nearest = NearestFaces(first, self._controls, self._columns, settings.seed)
 
     def run(self, path: Path, report: Report) -> dict[str, float]:
@@ -199,9 +201,12 @@ class AreaTrainer:
         """Return every term by name: weights, distances (equation 1) and velocity, the last two where there is truth."""
         settings, true = self._settings, batch.true
         whole = batch.weights[true].index_copy(1, self._columns, made[true])
-        reached = self._distances(whole)[:, self._controls]
+        near = self._controls < len(CONTROLS)  # angles and brows are left to the error of the weights
+        reached = self._distances(whole)[:, self._controls[near]]
         velocity = (made[true].diff(dim=2) - batch.target[true].diff(dim=2)).square().mean()
-        distance = distance_error(reached, batch.asked[true], settings.closure_gain)
+        distance = (
+            distance_error(reached, batch.asked[true][:, near], settings.closure_gain) if near.any() else made.sum() * 0
+        )
         return {
             "mse": (made - batch.target).square().mean(),
             "distance": settings.distance_share * distance,
@@ -248,10 +253,12 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
     """
     settings = settings or Settings()
     training, validation, _ = split(data)
-    partials = {area.name: out / f"regress_{area.name}.partial.safetensors" for area in AREAS}
+    partials = {area.name: out / f"regress_{area.name}.partial.safetensors" for area in (*AREAS, *EXTENDED_AREAS)}
     figures: dict[str, Any] = {}
-    for area in AREAS:
-        network, figures[area.name] = train_area(area, training, validation, settings, path=partials[area.name], report=report)
+    for area in (*AREAS, *EXTENDED_AREAS):
+        network, figures[area.name] = train_area(
+            area, training, validation, settings, path=partials[area.name], report=report
+        )
         path = out / f"regress_{area.name}.safetensors"
         save_model(path, network.state_dict(), kind="regress", config=network.config())
         save_card(path, _card(training, settings, figures[area.name]))
