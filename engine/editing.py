@@ -155,12 +155,12 @@ class Dragger:
         original = self.controls[seen_from:seen_to]
         edited = original.copy()
         edited[first - seen_from : last - seen_from] = wanted
-        at = np.arange(low, high) / per_frame - seen_from
+        at = np.arange(low, high, dtype=np.float64) / per_frame - seen_from
         if self._known is None or self._known[0] != (start, stop):
             known = self._regressor.infer_range(interpolate(original, at), start - low, stop - low)
             self._known = ((start, stop), known)
         made = self._regressor.infer_range(interpolate(edited, at), start - low, stop - low)
-        return interpolate(made - self._known[1], np.arange(first, last) * per_frame - start)
+        return interpolate(made - self._known[1], np.arange(first, last, dtype=np.float64) * per_frame - start)
 
 
 def _land(weights: Array, measured: Array, wanted: Array, *, exact_curve: bool) -> Array:
