@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
+import torch
 
 from engine import exact
 from engine.controls import CONTROLS, bundled_measurer, control_index
@@ -194,5 +195,9 @@ def edit_control(
 
 @lru_cache(maxsize=1)
 def warm_up() -> None:
-    """Load the networks and run them once, so that the first drag is as fast as the next."""
+    """Load the networks and run them once, so that the first drag is as fast as the next.
+
+    They are so small that a second thread costs more than it brings, five times as much on a busy machine.
+    """
+    torch.set_num_threads(1)
     infer.bundled().infer(np.tile(bundled_measurer().measure(np.zeros((1, len(SHAPES)))), (64, 1)))
