@@ -43,7 +43,8 @@ def _cheeks_and_brow(d: Array, q: Array) -> Array:
 
 
 def _neck(q: Array) -> Array:
-    d = capsule(q, (0, -6, -0.9), (0, -19, -2.2), 4.35, 5.0)
+    d = capsule(q, (0, -6, -0.9), (0, -19, -2.2), 4.2, 4.8)
+    d = union(d, capsule(q, (0, -2.0, -5.6), (0, -13.0, -3.6), 3.0, 3.4), 2.5)  # nape
     d = union(d, capsule(q, (4.6, -4.5, -1.2), (1.6, -18.5, 2.6), 0.8, 0.9), 2.0)  # sternomastoid
     return union(d, ellipsoid(q, (0, -13.4, 2.6), (0.9, 1.5, 1.2)), 1.8)  # larynx
 
@@ -52,8 +53,8 @@ def _nose(q: Array) -> Array:
     d = capsule(q, (0, 0.6, 8.75), (0, -2.75, 10.95), 0.55, 0.56)  # bridge
     d = union(d, ellipsoid(q, (0, -3.10, 11.2), (0.80, 0.68, 0.86)), 0.8)  # tip
     d = union(d, capsule(q, (0.42, 0.0, 8.3), (0.75, -2.9, 9.8), 0.55, 0.75), 0.9)  # side wall
-    d = union(d, capsule(q, (0, -3.5, 11.15), (0, -4.15, 10.2), 0.36, 0.40), 0.5)  # columella
-    return union(d, ellipsoid(q, (1.18, -3.55, 10.05), (0.60, 0.62, 0.90), turn_y(-14)), 0.45)  # wing
+    d = union(d, capsule(q, (0, -3.45, 11.1), (0, -3.95, 9.9), 0.36, 0.36), 0.7)  # columella
+    return union(d, ellipsoid(q, (1.15, -3.55, 10.05), (0.56, 0.62, 0.90), turn_y(-14)), 0.55)  # wing
 
 
 def _sockets(d: Array, q: Array) -> Array:

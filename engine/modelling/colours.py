@@ -5,22 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from engine.modelling import lips
-from engine.modelling.solids import bell, smooth_step
+from engine.modelling.solids import bell
 from engine.modelling.topology import Topology
 from engine.take import Array
 
 SKIN, LIP, INNER = (0.86, 0.68, 0.58), (0.77, 0.50, 0.46), (0.40, 0.15, 0.15)
-BROW, HAIR = (0.34, 0.24, 0.19), (0.27, 0.19, 0.15)
+BROW, LASH, HAIR = (0.34, 0.24, 0.19), (0.12, 0.08, 0.07), (0.36, 0.25, 0.18)
 WHITE, IRIS, PUPIL = (0.93, 0.92, 0.90), (0.28, 0.45, 0.50), (0.03, 0.03, 0.04)
 TOOTH, GUM, TONGUE = (0.93, 0.91, 0.85), (0.72, 0.38, 0.38), (0.74, 0.38, 0.38)
 
 
 def skin_colours(topology: Topology) -> Array:
-    """Return the skin's colours, (n, 3): blush, cropped hair, lips, lids' margins, the dark of nostrils and mouth."""
+    """Return the skin's colours, (n, 3): blush, lips, lids' margins, the dark of nostrils and mouth."""
     points = topology.points
-    paint = np.tile(SKIN, (len(points), 1)) * (1 - 0.10 * _blush(points)[:, None] * np.array([0.2, 1, 1]))
-    hair = 0.72 * smooth_step(-0.45, 0.55, points[:, 1] - hairline(points))[:, None]
-    paint = paint * (1 - hair) + np.array(HAIR) * hair
+    paint: Array = np.tile(SKIN, (len(points), 1)) * (1 - 0.10 * _blush(points)[:, None] * np.array([0.2, 1, 1]))
     paint = paint * (1 - 0.03 * bell(points, (0, -8, 7), (4.5, 3, 5))[:, None])  # shadow of a beard
     _paint_lips(paint, topology)
     for side in ("left", "right"):
@@ -32,14 +30,6 @@ def skin_colours(topology: Topology) -> Array:
         for ring in (2, 3, 4):
             paint[nostril[ring]] = np.array(SKIN) * [0.45, 0.35, 0.33]
     return paint
-
-
-def hairline(points: Array) -> Array:
-    """Return the height at which hair begins for points at their x and z, (n,)."""
-    x, z = np.abs(points[:, 0]), points[:, 2]
-    side = np.interp(z, [-8, -3.5, -1.2, 1.0], [-5.4, -4.6, 1.4, 1.2])
-    forehead = 6.9 - 0.16 * x**1.25 + 1.2 * np.exp(-(((x - 4.4) / 1.2) ** 2)) - 3.2 * smooth_step(5.9, 6.8, x)
-    return np.asarray(np.where(z > 1.0, forehead, side))
 
 
 def _blush(points: Array) -> Array:

@@ -40,9 +40,8 @@ def open_elevation(along: Array, lid: Array) -> Array:
     return np.where(lid > 0, upper, np.where(lid < 0, lower, 0.0))
 
 
-def margin_elevation(closed: float, raise_upper: float, raise_lower: float) -> Array:
+def margin_elevation(along: Array, lid: Array, closed: float, raise_upper: float, raise_lower: float) -> Array:
     """Return the elevation of the margin in degrees, `closed` 0..1 of the way to the closed slit."""
-    along, lid = positions()
     raised = np.where(lid > 0, raise_upper, np.where(lid < 0, raise_lower, 0.0)) * (1 - np.abs(along) ** 3)
     return mix(open_elevation(along, lid) + raised, -11.0 * (1 - np.abs(along) ** 2.4), closed)
 
@@ -55,7 +54,7 @@ def rings(closed: float = 0.0, raise_upper: float = 0.0, raise_lower: float = 0.
     """
     along, lid = positions()
     opened = open_elevation(along, lid)
-    margin = margin_elevation(closed, raise_upper, raise_lower)
+    margin = margin_elevation(along, lid, closed, raise_upper, raise_lower)
     middle = 1 - np.abs(along) ** 6
     outward = np.sign(along) * np.abs(along) ** 6
     corner = np.abs(along) ** 4

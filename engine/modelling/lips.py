@@ -11,7 +11,7 @@ from engine.take import Array
 POINTS = 48  # of a ring: 0 at the right corner, over the upper lip to 24 at the left one, back below
 SKIN_RINGS = 4  # rings of the mouth block outside the lips' own
 SLIT_Y = -6.42
-HALF_WIDTH = 2.5
+HALF_WIDTH = 2.36
 ARCH_CENTRE_Z = 7.3  # of the cylinder that lips and teeth follow
 
 
@@ -30,8 +30,8 @@ def curves(along: Array) -> tuple[Array, Array, Array]:
     a = np.abs(along)
     slit = SLIT_Y + 0.05 * np.exp(-(((a - 0.48) / 0.2) ** 2)) - 0.05 * np.exp(-((a / 0.2) ** 2)) - 0.02 * a**3
     bow = 0.08 * np.exp(-(((a - 0.22) / 0.12) ** 2)) - 0.08 * np.exp(-((a / 0.13) ** 2))
-    upper = slit + 0.88 * (1 - a**1.9) + bow
-    lower = slit - 1.12 * (1 - a**2.3) ** 0.85
+    upper = slit + 0.78 * (1 - a**1.9) + bow
+    lower = slit - 0.98 * (1 - a**2.3) ** 0.85
     return slit, upper, lower
 
 
@@ -59,7 +59,7 @@ def _visible_rings() -> list[Array]:
     is_upper = lip >= 0
     reach = np.where(is_upper, np.array([[0.0, 0.36, 0.72, 0.97, 1.0]]).T, np.array([[0.0, 0.36, 0.70, 0.96, 1.0]]).T)
     swell = np.where(is_upper, np.array([[0.04, 0.42, 0.88, 0.80, 0.0]]).T, np.array([[0.04, 0.62, 1.0, 0.80, 0.0]]).T)
-    height = np.where(is_upper, 0.36, 0.46) * fullness + 0.03
+    height = np.where(is_upper, 0.31, 0.39) * fullness + 0.03
     tubercle = np.where(lip > 0, 0.06 * np.exp(-((a / 0.18) ** 2)), 0)
     recess = 0.10 + 0.02 * fullness + 0.16 * a**6
     loops = []

@@ -170,9 +170,10 @@ def _jaw_weights(rest: Array, ring: Indices, along: Array, lip: Array, lid: Indi
 
 def _parts(rest: Array, topology: Topology) -> list[Part]:
     contact = rest[topology.mouth[8][: lips.POINTS // 2 + 1]]
-    pairs = [parts.eyeball(), parts.ear(), hair.brow()]
+    pairs = [parts.eyeball(), parts.ear(), hair.brow(), hair.lashes()]
     both = [part for left in pairs for part in (left, left.twin())]
-    return [*both, parts.teeth(contact, upper=True), parts.teeth(contact, upper=False), parts.tongue()]
+    middle = [parts.teeth(contact, upper=True), parts.teeth(contact, upper=False), parts.tongue(), hair.cap()]
+    return [*both, *middle]
 
 
 def _joined(topology: Topology, pieces: list[Part]) -> tuple[Array, Indices, Array, Indices, dict[str, slice]]:

@@ -60,21 +60,28 @@ def _place_mouth(points: Array, fixed: Mask, topology: Topology) -> None:
 
 
 def _place_nostrils(points: Array, fixed: Mask, topology: Topology) -> None:
-    """Shrink the loop on the clay, then push a small pit up and back."""
-    border = points[topology.nostrils["left"][0]]
-    centre = np.array([0.62, -3.95, 10.35])
-    rim = clay.project(centre + 0.50 * (border - border.mean(axis=0)), rounds=6)
+    """Lay ovals on the underside of the nose, then push a small pit up and back."""
+    border, rim = (_nostril_oval(size) for size in (1.0, 0.62))
     middle = rim.mean(axis=0)
     pit = [
+        border,
         rim,
         mix(rim, middle, 0.15) + np.array([0, 0.16, -0.03]),
         mix(rim, middle, 0.4) + np.array([0, 0.45, -0.10]),
         middle[None] + np.array([0, 0.60, -0.15]),
     ]
-    for ring, place in enumerate(pit, start=1):
+    for ring, place in enumerate(pit):
         for side, sign in (("left", np.ones(3)), ("right", _MIRROR)):
             points[topology.nostrils[side][ring]] = place * sign
             fixed[topology.nostrils[side][ring]] = True
+
+
+def _nostril_oval(size: float) -> Array:
+    """Return a loop on the underside of the left half of the nose, from its inner side over the front, (10, 3)."""
+    turn = np.pi * (1 - np.arange(10) / 5)[:, None]
+    across, forward = np.array([0.92, -0.05, -0.38]), np.array([-0.38, 0.2, 0.90])
+    oval = size * (0.36 * np.cos(turn) * across + 0.56 * np.sin(turn) * forward)
+    return clay.project(np.array([0.66, -4.2, 10.35]) + oval, rounds=6)
 
 
 def _relax(points: Array, free: Mask, averaging: sparse.csr_array, rounds: int = 14, rate: float = 0.5) -> Array:

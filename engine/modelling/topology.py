@@ -81,12 +81,13 @@ def layout() -> Layout:
 
 
 def column_angle(column: Array, y: Array) -> Array:
-    """Return the angle of a column from the front in radians: dense at the eyes above, at the mouth below."""
+    """Return the angle of a column from the front in radians: dense at the eyes above, at nose and mouth below."""
     steps = np.abs(column)
     eyes = np.where(steps <= 3, 2.6 * steps, 7.8 + (52 - 7.8) / 12 * (steps - 3))
     mouth = np.where(steps <= 8, 3.65 * steps, 29.2 + (52 - 29.2) / 7 * (steps - 8))
     side = 52 + (180 - 52) * (steps - 15) / (HALF_COLUMNS - 15)
-    front = mix(eyes, mouth, smooth_step(-1.5, -4.5, y))
+    nose = np.interp(steps, [0, 6, 15], [0, 12.6, 52])
+    front = mix(mix(eyes, mouth, smooth_step(-1.5, -4.5, y)), nose, np.exp(-(((y + 3.7) / 0.9) ** 2)))
     return np.radians(np.where(steps <= 15, front, side)) * np.sign(column)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.modelling import eyelids
+from engine.modelling import eyelids, hair
 from engine.modelling.clay import EYE_CENTRE
 from engine.modelling.sculpture import Sculpture
 from engine.modelling.shapes.fields import Stroke, strokes
@@ -21,6 +21,8 @@ def move_lids(head: Sculpture, closed: float = 0.0, raise_upper: float = 0.0, ra
         motion[loops[ring]] = offset
     for ring, share in ((3, 0.55), (2, 0.25), (1, 0.08)):
         motion[loops[ring]] = share * turned[0]
+    pose = (closed, raise_upper, raise_lower)
+    motion[head.at["lashes_left"]] = hair.lash_points(*pose) - hair.lash_points()
     return motion
 
 
