@@ -15,7 +15,7 @@ CAP_ROWS, CAP_COLUMNS = 20, 96
 # height of the hairline in cm by degrees from the front: forehead, temple, sideburn, over the ear, nape
 _HAIRLINE = PchipInterpolator(
     [0, 12, 27, 40, 52, 62, 69, 76, 83, 92, 105, 113, 123, 137, 155, 180],
-    [6.5, 6.55, 7.0, 6.3, 4.3, 2.4, 0.5, 0.1, 1.6, 2.15, 1.9, 0.0, -2.6, -4.2, -4.8, -5.0],
+    [6.5, 6.55, 7.0, 6.3, 4.3, 2.4, 0.5, 0.1, 1.6, 2.15, 1.9, 0.5, -1.7, -3.5, -4.6, -5.0],
 )
 _CAP_CENTRE = np.array([0.0, 1.5, -0.8])
 _WHORL = np.array([0.0, 0.88, -0.475])  # where the hair grows from, at the back of the crown
@@ -45,7 +45,7 @@ def lash_points(closed: float = 0.0, raise_upper: float = 0.0, raise_lower: floa
     margin = eyelids.margin_elevation(along, np.ones(LASH_COLUMNS), closed, raise_upper, raise_lower)
     clump = np.where(np.arange(LASH_COLUMNS) % 2, 1.0, 0.84)
     length = 0.25 * (1 - np.abs(along) ** 4) * (0.62 + 0.38 * along) * clump
-    curl = float(mix(11.0, -9.0, closed)) * length / 0.25
+    curl = float(mix(9.0, -4.0, closed)) * length / 0.25
     root = clay.EYE_RADIUS + 0.10 * np.abs(along) ** 4 + 0.05 * closed
     flare = eyelids.HALF_WIDTH_DEGREES * along
     rows = [

@@ -23,8 +23,10 @@ def cheek_puff(head: Sculpture) -> Array:
 
 def cheek_squint(head: Sculpture) -> Array:
     """Raise the cheek and with it the lower lid."""
-    cheek = strokes(head, Stroke((3.7, -2.4), (1.7, 1.2), (0.05, 0.50, 0.22)))
-    return cheek + move_lids(head, raise_lower=4.5)
+    cheek = strokes(
+        head, Stroke((3.6, -2.7), (1.7, 1.2), (0.05, 0.70, 0.42)), Stroke((3.5, -1.5), (1.6, 0.6), (0, 0.15, 0.12))
+    )
+    return cheek + move_lids(head, raise_upper=-1.5, raise_lower=8.0)
 
 
 def nose_sneer(head: Sculpture) -> Array:

@@ -30,7 +30,7 @@ def jaw_forward(head: Sculpture) -> Array:
 def jaw_left(head: Sculpture) -> Array:
     """Shift to the character's left, swinging about the left hinge."""
     return _rigid(
-        head, lambda points: np.stack([np.full(len(points), 0.95), 0 * points[:, 0], -0.06 * points[:, 0]], axis=-1)
+        head, lambda points: np.stack([np.full(len(points), 1.45), 0 * points[:, 0], -0.09 * points[:, 0]], axis=-1)
     )
 
 

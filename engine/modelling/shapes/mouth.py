@@ -24,8 +24,8 @@ CORNER = (2.5, SLIT_Y)
 SIDEWAYS = (Stroke((0.0, SLIT_Y), (3.3, 2.0), (1.15, 0, 0), slides=True, crosses=True),)
 CORNER_STROKES: dict[str, tuple[Stroke, ...]] = {
     "mouthSmile": (
-        Stroke((2.35, SLIT_Y), (1.55, 1.7), (0.85, 0.95, -0.35), slides=True),
-        Stroke((4.1, -3.9), (1.7, 1.5), (0.12, 0.50, 0.30)),
+        Stroke((2.35, SLIT_Y), (1.85, 1.7), (0.95, 0.80, -0.40), slides=True),
+        Stroke((4.1, -3.9), (1.7, 1.4), (0.12, 0.52, 0.42)),
         Stroke((3.4, -1.9), (1.0, 1.2), (0, 0.12, 0.05)),
     ),
     "mouthFrown": (
@@ -74,8 +74,8 @@ def mouth_press(head: Sculpture) -> Array:
 def mouth_roll_lower(head: Sculpture) -> Array:
     """Roll the lower lip in over the teeth."""
     amount = _roll(head) * np.clip(-head.lip, 0, 1)
-    rise = np.where(head.ring >= 8, 0.04, 0.34)
-    return head.move_skin(amount, np.column_stack([0 * rise, rise, np.full(len(rise), -0.62)]))
+    rise = np.where(head.ring >= 8, 0.06, 0.42)
+    return head.move_skin(amount, np.column_stack([0 * rise, rise, np.full(len(rise), -0.58)]))
 
 
 def mouth_roll_upper(head: Sculpture) -> Array:
@@ -93,8 +93,8 @@ def _roll(head: Sculpture) -> Array:
 def mouth_shrug_lower(head: Sculpture) -> Array:
     """Push chin and lower lip up, the lip a little out."""
     amount = head.smooth(around(head, (0, -7.7), (2.4, 2.2)) * by_lip(head, 0.0, 1.0), head.ring >= 7, 3)
-    motion = push_skin(head, amount, (0, 0.42, 0.20))
-    motion += strokes(head, Stroke((0, -9.2), (1.9, 1.5), (0, 0.30, 0.12), crosses=True))
+    motion = push_skin(head, amount, (0, 0.52, 0.20))
+    motion += strokes(head, Stroke((0, -9.2), (1.9, 1.5), (0, 0.24, 0.12), crosses=True))
     red = by_ring(head, dict.fromkeys(range(4, 11), 1.0)) * np.clip(-head.lip, 0, 1) * (1 - head.along**2)
     return motion + head.move_skin(red, (0, 0, 0.22))
 
@@ -107,13 +107,13 @@ def mouth_shrug_upper(head: Sculpture) -> Array:
 
 def mouth_upper_up(head: Sculpture) -> Array:
     """Raise one half of the upper lip and the cheek above it."""
-    lifted = push_skin(head, _half_lip(head, by_lip(head, 1.0, 0.0)), (0.06, 0.85, 0.02), slides=True)
+    lifted = push_skin(head, _half_lip(head, by_lip(head, 1.0, 0.0)), (0.06, 0.70, 0.02), slides=True)
     return lifted + strokes(head, Stroke((2.2, -4.4), (1.2, 1.5), (0.08, 0.22, 0.12)))
 
 
 def mouth_lower_down(head: Sculpture) -> Array:
     """Lower one half of the lower lip."""
-    lowered = push_skin(head, _half_lip(head, by_lip(head, 0.0, 1.0)), (0.06, -0.85, -0.02), slides=True)
+    lowered = push_skin(head, _half_lip(head, by_lip(head, 0.0, 1.0)), (0.06, -0.72, -0.02), slides=True)
     return lowered + strokes(head, Stroke((1.6, -8.4), (1.4, 1.2), (0, -0.20, 0.06)))
 
 
@@ -121,7 +121,7 @@ def _half_lip(head: Sculpture, lip: Array) -> Array:
     """Return a field on the left half of one lip and the skin beside it, (skin,)."""
     on_rings = np.clip(1 - ((head.along - 0.42) / 0.62) ** 2, 0, 1)
     x, y = head.skin[:, 0], head.skin[:, 1]
-    beside = np.exp(-(((x - 1.2) / 1.25) ** 2) - ((y - SLIT_Y) / 1.9) ** 2)
+    beside = np.exp(-(((x - 1.2) / 1.25) ** 2) - ((y - SLIT_Y) / 1.5) ** 2)
     amount = lip * np.where(head.ring >= 3, on_rings, beside) * head.front
     return head.smooth(amount, head.ring >= 3, 6)
 
