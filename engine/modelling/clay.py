@@ -60,7 +60,8 @@ def _nose(q: Array) -> Array:
 def _sockets(d: Array, q: Array) -> Array:
     d = carve(d, ellipsoid(q, (3.2, -0.15, 9.35), (2.05, 1.25, 1.45), turn_y(12)), 1.3)
     d = carve(d, ellipsoid(q, (1.45, 0.0, 9.6), (0.75, 1.0, 0.9)), 0.9)
-    d = union(d, np.linalg.norm(q - EYE_CENTRE, axis=1) - (EYE_RADIUS + 0.27), 0.45)  # the eyeball under its lids
+    d = union(d, ellipsoid(q, (3.15, -2.05, 7.35), (1.9, 0.9, 1.25), turn_y(12)), 0.9)  # fills under the eye
+    d = union(d, np.linalg.norm(q - EYE_CENTRE, axis=1) - (EYE_RADIUS + 0.27), 0.6)  # the eyeball under its lids
     return carve(d, ellipsoid(q, (8.3, 1.2, 5.4), (1.5, 2.4, 2.0)), 2.0)  # temple
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from engine.modelling import colours
 from engine.modelling.clay import EYE_CENTRE, EYE_RADIUS
 from engine.modelling.lips import outward
+from engine.modelling.solids import smooth_step
 from engine.take import Array
 
 
@@ -67,7 +68,8 @@ def eyeball() -> Part:
     )
     degrees, turn = np.degrees(angle).reshape(-1, 1), turn.reshape(-1, 1)
     iris = np.array(colours.IRIS) * (0.9 + 0.1 * np.sin(9 * turn)) * (1 - 0.35 * (degrees > 21))
-    paint = np.where(degrees < 9.5, colours.PUPIL, np.where(degrees < 23.5, iris, colours.WHITE))
+    white = np.array(colours.WHITE) * (1 - 0.28 * smooth_step(30, 74, degrees))  # in the lids' shade
+    paint = np.where(degrees < 9.5, colours.PUPIL, np.where(degrees < 23.5, iris, white))
     triangles = np.concatenate(
         [sheet(len(angles), columns, closed=True), fan(np.arange(columns), centre=len(points) - 1)]
     )
