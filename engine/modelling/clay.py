@@ -27,7 +27,7 @@ def _cranium(q: Array) -> Array:
 def _lower_face(d: Array, q: Array) -> Array:
     d = union(d, ellipsoid(q, (0, -1.8, 3.2), (6.1, 6.2, 5.6)), 2.0)  # mid face
     d = union(d, ellipsoid(q, (0, -6.6, 4.0), (4.6, 4.0, 5.0)), 2.0)
-    d = union(d, capsule(q, (4.6, -6.0, 1.6), (1.1, -9.4, 7.7), 0.95, 1.15), 2.6)  # jaw line
+    d = union(d, capsule(q, (4.5, -6.1, 1.6), (1.35, -9.75, 7.5), 0.95, 1.1), 2.6)  # jaw line
     d = union(d, capsule(q, (5.2, -2.0, 1.0), (4.8, -6.0, 1.7), 1.2, 1.0), 2.2)  # angle of the jaw
     return union(d, ellipsoid(q, (0, -6.3, 6.5), (3.35, 2.7, 3.85)), 1.6)  # muzzle
 
@@ -43,7 +43,7 @@ def _cheeks_and_brow(d: Array, q: Array) -> Array:
 
 
 def _neck(q: Array) -> Array:
-    d = capsule(q, (0, -6, -0.9), (0, -19, -2.2), 4.2, 4.8)
+    d = capsule(q, (0, -6, -0.9), (0, -19, -2.2), 4.0, 4.6)
     d = union(d, capsule(q, (0, -2.0, -5.6), (0, -13.0, -3.6), 3.0, 3.4), 2.5)  # nape
     d = union(d, capsule(q, (4.6, -4.5, -1.2), (1.6, -18.5, 2.6), 0.8, 0.9), 2.0)  # sternomastoid
     return union(d, ellipsoid(q, (0, -13.4, 2.6), (0.9, 1.5, 1.2)), 1.8)  # larynx

@@ -85,7 +85,7 @@ def teeth(contact: Array, *, upper: bool) -> Part:
     arch = np.column_stack([np.interp(along, place, arch[:, axis]) for axis in range(3)])
     away = np.column_stack([np.interp(along, place, away[:, axis]) for axis in range(3)])
     tooth = np.abs(np.sin(np.pi * np.arange(columns) / 5))[:, None] ** 0.35  # five columns each
-    sign, edge = (1.0, -0.05) if upper else (-1.0, -0.03)
+    sign, edge = (1.0, -0.11) if upper else (-1.0, -0.03)
     # height above the edge, how far forward, whether it is gum
     profile = ((1.25, -0.02, 1), (0.95, 0.0, 1), (0.80, 0.02, 0), (0.35, 0.05, 0), (0.06, 0.03, 0), (0.0, -0.06, 0))
     points, paint = [], []
