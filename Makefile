@@ -19,7 +19,7 @@ $(STAMP): pyproject.toml Makefile
 	touch $(STAMP)
 
 run: setup
-	$(PYTHON) -m app.main_job $(TAKE)
+	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then $(PYTHON) -m app $(TAKE); else $(PYTHON) -m app.main_job $(TAKE); fi
 
 lint: setup
 	$(PYTHON) -m ruff check .

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import QAction, QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence
+from PySide6.QtGui import QAction, QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence, QShowEvent
 from PySide6.QtWidgets import (
     QApplication,
     QFileDialog,
@@ -150,7 +151,8 @@ class MainWindow(QMainWindow):
         middle.setSpacing(GRID)
         middle.addWidget(split, 1)
         middle.addWidget(self.inspector)
-        central = QWidget(objectName="central")
+        central = QWidget()
+        central.setObjectName("central")
         column = QVBoxLayout(central)
         column.setContentsMargins(GRID, 0, GRID, GRID)
         column.setSpacing(GRID)
@@ -184,16 +186,13 @@ class MainWindow(QMainWindow):
         self.transport.changed.connect(self._show_transport)
         self.inspector.close_here.connect(self.close_here)
         self.inspector.value_typed.connect(self.set_value)
-        stack = self.session.undo
-        stack.canUndoChanged.connect(lambda _: self._show_undo())
-        stack.undoTextChanged.connect(lambda _: self._show_undo())
-        stack.redoTextChanged.connect(lambda _: self._show_undo())
+        self.session.undo.indexChanged.connect(self._show_undo)
         self._show_undo()
         application = QApplication.instance()
         if application is not None:
             application.installEventFilter(self)
 
-    def showEvent(self, event: QEvent) -> None:
+    def showEvent(self, event: QShowEvent) -> None:
         """Load the networks once the window can be seen."""
         super().showEvent(event)
         QTimer.singleShot(0, self.inference.warm_up)
@@ -209,7 +208,7 @@ class MainWindow(QMainWindow):
             self.notices.tell(notice)
         self._show_title()
 
-    def load(self, path: Path) -> bool:
+    def load(self, path: Path, *_: object) -> bool:
         """Open a file; what is open stays as it was where the file cannot be read."""
         try:
             take = read_take(path)
@@ -270,7 +269,9 @@ class MainWindow(QMainWindow):
     def _fill_recent(self) -> None:
         self._recent.clear()
         for name in self.settings.recent:
-            self._recent.addAction(Path(name).name, lambda chosen=name: self.load(Path(chosen))).setToolTip(name)
+            entry = self._recent.addAction(Path(name).name)
+            entry.setToolTip(name)
+            entry.triggered.connect(partial(self.load, Path(name)))
         self._recent.setEnabled(bool(self.settings.recent))
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
@@ -298,6 +299,7 @@ class MainWindow(QMainWindow):
         if application is not None:
             application.removeEventFilter(self)
         self.transport.run(0.0)
+        self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
         self.inference.close()
         self.preview.close_renderer()
 
@@ -515,7 +517,7 @@ class MainWindow(QMainWindow):
         self.setWindowModified(self.session.edited)
         self.status["saved"].setText("edited" if self.session.edited else "saved" if self._saved_view else "")
 
-    def _show_undo(self) -> None:
+    def _show_undo(self, *_: int) -> None:
         stack = self.session.undo
         for name, able, text in (
             ("undo", stack.canUndo(), stack.undoText()),

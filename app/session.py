@@ -60,7 +60,7 @@ class Session(QObject):
         self.path: Path | None = None
         self.strength, self.exact = 1.0, False
         self.open(take, None)
-        self.undo.cleanChanged.connect(lambda _: self.changed.emit(Change.SAVED))
+        self.undo.cleanChanged.connect(self._on_clean_changed)
 
     def open(self, take: Take, path: Path | None) -> None:
         """Replace everything by a take."""
@@ -79,6 +79,9 @@ class Session(QObject):
         self.undo.clear()
         self.changed.emit(Change.TAKE)
 
+    def _on_clean_changed(self, _: bool) -> None:
+        self.changed.emit(Change.SAVED)
+
     @property
     def name(self) -> str:
         """What to call the open take."""
@@ -93,14 +96,14 @@ class Session(QObject):
         """Return the weights to show at a frame, (52,): the draft's where it has them."""
         draft = self.draft
         if draft is not None and draft.start <= frame < draft.stop:
-            return draft.weights[frame - draft.start]
+            return np.asarray(draft.weights[frame - draft.start])
         return np.asarray(self.take.weights[frame])
 
     def shown_controls(self, frame: int) -> Array:
         """Return the controls to show at a frame, (8,) mm."""
         draft = self.draft
         if draft is not None and draft.start <= frame < draft.stop:
-            return draft.reached[frame - draft.start]
+            return np.asarray(draft.reached[frame - draft.start])
         return np.asarray(self.controls[frame])
 
     def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array) -> None:

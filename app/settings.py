@@ -7,7 +7,6 @@ from logging.handlers import RotatingFileHandler
 from pathlib import Path
 
 import platformdirs
-from PySide6.QtCore import QSettings
 
 NAME = "Retake"
 RECENT = 8
@@ -38,6 +37,8 @@ class Settings:
     """
 
     def __init__(self, path: Path | None = None) -> None:
+        from PySide6.QtCore import QSettings  # here, so that commands can log without loading Qt
+
         folder = Path(platformdirs.user_config_dir(NAME, appauthor=False))
         self._stored = QSettings(str(path or folder / "retake.ini"), QSettings.Format.IniFormat)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import sys
 from pathlib import Path
 from types import TracebackType
@@ -11,9 +12,14 @@ from engine.errors import EngineError
 from engine.formats import read_take
 from engine.performance import demo
 
+DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
+
 
 def start(path: Path | None) -> int:
     """Open a take, or the bundled one, in a window; returns when it is closed."""
+    if sys.platform == "linux" and not any(os.environ.get(name) for name in DISPLAYS):
+        print("There is no display to open the window on. The commands work without: retake --help.", file=sys.stderr)
+        return 2
     from PySide6.QtWidgets import QApplication
 
     from app.main_window import MainWindow

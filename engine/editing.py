@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
+import torch
 
 from engine import exact
 from engine.controls import CONTROLS, bundled_measurer, control_index
@@ -155,12 +156,12 @@ class Dragger:
         original = self.controls[seen_from:seen_to]
         edited = original.copy()
         edited[first - seen_from : last - seen_from] = wanted
-        at = np.arange(low, high) / per_frame - seen_from
+        at = np.arange(low, high, dtype=np.float64) / per_frame - seen_from
         if self._known is None or self._known[0] != (start, stop):
             known = self._regressor.infer_range(interpolate(original, at), start - low, stop - low)
             self._known = ((start, stop), known)
         made = self._regressor.infer_range(interpolate(edited, at), start - low, stop - low)
-        return interpolate(made - self._known[1], np.arange(first, last) * per_frame - start)
+        return interpolate(made - self._known[1], np.arange(first, last, dtype=np.float64) * per_frame - start)
 
 
 def _land(weights: Array, measured: Array, wanted: Array, *, exact_curve: bool) -> Array:
@@ -194,5 +195,9 @@ def edit_control(
 
 @lru_cache(maxsize=1)
 def warm_up() -> None:
-    """Load the networks and run them once, so that the first drag is as fast as the next."""
+    """Load the networks and run them once, so that the first drag is as fast as the next.
+
+    They are so small that a second thread costs more than it brings, five times as much on a busy machine.
+    """
+    torch.set_num_threads(1)
     infer.bundled().infer(np.tile(bundled_measurer().measure(np.zeros((1, len(SHAPES)))), (64, 1)))

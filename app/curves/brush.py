@@ -15,7 +15,7 @@ def falloff(frames: Array, centre: float, radius_frames: float) -> Array:
 
 def pulled(curve: Array, start: int, centre: int, *, by_mm: float, radius_frames: int, strength: float) -> Array:
     """Return rows of a curve, (n,) in mm from frame `start`, pulled at `centre`; a distance is never below zero."""
-    frames = start + np.arange(len(curve))
+    frames = np.arange(start, start + len(curve), dtype=np.float64)
     return np.asarray(np.maximum(0.0, curve + strength * by_mm * falloff(frames, centre, radius_frames)))
 
 

@@ -15,7 +15,7 @@ from engine.take import Array
 GUTTER_PX = 128
 
 
-class Gutter(pg.GraphicsWidget):
+class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
     """The name of a lane, its range and its value at the playhead."""
 
     def __init__(self, control: Control) -> None:
@@ -115,7 +115,7 @@ class Lane:
         """Return the fractional frame at a scene position."""
         box = self.scene_box()
         (first, last), _ = self.view.viewRange()
-        return first + (x - box.left()) / max(1.0, box.width()) * (last - first)
+        return float(first + (x - box.left()) / max(1.0, box.width()) * (last - first))
 
     def value_at(self, y: float) -> float:
         """Return the value in mm at a scene position."""
@@ -133,4 +133,4 @@ class Lane:
         """Return the scene position of a frame."""
         box = self.scene_box()
         (first, last), _ = self.view.viewRange()
-        return box.left() + (frame - first) / max(1e-9, last - first) * box.width()
+        return float(box.left() + (frame - first) / max(1e-9, last - first) * box.width())

@@ -22,7 +22,7 @@ ACTIVE_STRETCH, STRETCH = 24, 10
 WHEEL_STEP = 1.2
 
 
-class CurvesPanel(pg.GraphicsLayoutWidget):
+class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     """One lane per control.
 
     Parameters

@@ -57,12 +57,12 @@ class Inspector(QFrame):
     def _brush(self, column: QVBoxLayout) -> None:
         column.addWidget(_heading("Drag"))
         self.radius = QSpinBox(minimum=1, maximum=300, suffix=" frames")
-        self._radius_slider = QSlider(Qt.Orientation.Horizontal, minimum=1, maximum=120)
+        self._radius_slider = _slider(1, 120)
         self.radius.setToolTip("How many frames on either side follow. Turn the wheel while dragging to change it.")
         _row(column, "Radius", self.radius)
         column.addWidget(self._radius_slider)
         self.strength = QSpinBox(minimum=0, maximum=100, suffix=" %")
-        self._strength_slider = QSlider(Qt.Orientation.Horizontal, minimum=0, maximum=100)
+        self._strength_slider = _slider(0, 100)
         _row(column, "Strength", self.strength)
         column.addWidget(self._strength_slider)
         self.exact = QCheckBox("Hit the curve exactly")
@@ -183,6 +183,12 @@ class Inspector(QFrame):
             lines.append(f"{moved:,} of {len(now):,} frames differ from the original")
             lines.append(f"{len(now) - moved:,} frames bit-identical")
         return "\n".join(lines)
+
+
+def _slider(lowest: int, highest: int) -> QSlider:
+    slider = QSlider(Qt.Orientation.Horizontal)
+    slider.setRange(lowest, highest)
+    return slider
 
 
 def _heading(text: str) -> QLabel:

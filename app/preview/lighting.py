@@ -75,4 +75,4 @@ class Lighting:
         shine = np.clip(np.einsum("vx,vx->v", normals, half), 0.0, 1.0) ** 24
         light = 0.92 * key[:, None] * WARM + 0.20 * fill[:, None] * COOL + sky[:, None] + 0.75 * rim[:, None] * COOL
         lit = (self._linear if linear is None else linear) * light + 0.07 * shine[:, None]
-        return self._to_srgb[(np.clip(lit, 0.0, 1.0) * (_STEPS - 1)).astype(np.int32)]
+        return np.asarray(self._to_srgb[(np.clip(lit, 0.0, 1.0) * (_STEPS - 1)).astype(np.int32)], np.float32)

@@ -151,9 +151,9 @@ class PreviewPanel(QFrame):
         self._off = False
         self._still = QTimer(self, singleShot=True, interval=STILL_MS)
         self._still.timeout.connect(self._sharpen)
-        self.render = render_thread()
-        self.render.done.connect(self._arrived)
-        self.render.failed.connect(self._refused)
+        self.drawing = render_thread()
+        self.drawing.done.connect(self._arrived)
+        self.drawing.failed.connect(self._refused)
         self._lay_out()
         self.face.camera_moved.connect(lambda _: self.refresh())
         session.changed.connect(self._on_change)
@@ -163,7 +163,9 @@ class PreviewPanel(QFrame):
         row.setSpacing(2)
         self._views = QButtonGroup(self)
         for name in VIEWS:
-            button = QToolButton(text=name, checkable=True)
+            button = QToolButton()
+            button.setText(name)
+            button.setCheckable(True)
             button.setProperty("segment", True)
             button.setToolTip(f"Show {name.lower()} (hold B to see the original)")
             self._views.addButton(button)
@@ -208,7 +210,7 @@ class PreviewPanel(QFrame):
     def close_renderer(self) -> None:
         """End the render thread."""
         self._still.stop()
-        self.render.stop()
+        self.drawing.stop()
 
     def refresh(self, *, moving: bool = True, since: float = 0.0) -> None:
         """Draw the frame at the playhead anew; coarser while something moves and the budget is missed."""
@@ -218,7 +220,7 @@ class PreviewPanel(QFrame):
         ratio = self.devicePixelRatioF() * (0.5 if self._coarse else 1.0)
         size = (int(self.face.width() * ratio), int(self.face.height() * ratio))
         self._asked_at = time.perf_counter()
-        self.render.submit(Wanted(replace(self._shot(), size=size), self._character, since))
+        self.drawing.submit(Wanted(replace(self._shot(), size=size), self._character, since))
         if self._coarse:
             self._still.start()
 

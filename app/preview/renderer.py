@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -149,7 +150,7 @@ def _framed(character: Character) -> tuple[Array, Array]:
     return low, high
 
 
-def _pyrender():  # type: ignore[no-untyped-def]
+def _pyrender() -> Any:
     # pyrender 0.1.45 was written for numpy 1, which had this second name for infinity.
     if not hasattr(np, "infty"):
         np.infty = np.inf  # type: ignore[attr-defined]  # noqa: NPY201
@@ -158,7 +159,7 @@ def _pyrender():  # type: ignore[no-untyped-def]
     return pyrender
 
 
-def _skip_depth(renderer) -> None:  # type: ignore[no-untyped-def]
+def _skip_depth(renderer: Any) -> None:
     """Read back colour alone: the depth picture costs as much to read and nobody looks at it."""
     from OpenGL import GL
 

@@ -101,7 +101,8 @@ class Timeline(QWidget):
             time_s = index * step
             x = self.x_of(time_s * fps)
             painter.setPen(QColor(self._colours.quiet))
-            painter.drawText(QRectF(x - 50, 4, 100, 14), middle, timecode(time_s, fps))
+            label = max(x - 50, self._gutter - 50 + LABEL_PX / 2)
+            painter.drawText(QRectF(label, 4, 100, 14), middle, timecode(time_s, fps))
             painter.setPen(QColor(self._colours.edge))
             painter.drawLine(int(x), 20, int(x), RULER_PX)
             index += 1
