@@ -26,7 +26,12 @@ def train(data: Path, out: Path = MODELS, report: Report = print) -> dict[str, A
     for area in AREAS:
         valid = [piece.weights for piece in (whole_faces(validation) if area.needs_whole_face else validation)]
         material = source(
-            area, training, settings.levers, minutes=settings.synthetic_minutes, seed=settings.seed, window=WINDOW
+            area,
+            training,
+            settings.recipe(area).levers,
+            minutes=settings.synthetic_minutes,
+            seed=settings.seed,
+            window=WINDOW,
         )
         materials.append(Material(area, material, cut(valid, length=WINDOW, overlap=0.5)))
     found: dict[str, Any] = {}
@@ -42,7 +47,7 @@ def train(data: Path, out: Path = MODELS, report: Report = print) -> dict[str, A
             split="train; selected on the last 15 % of each training take; test takes never seen",
             seed=settings.seed,
             commit=commit(),
-            settings={"window": WINDOW, "levers": asdict(settings.levers)},
+            settings={"window": WINDOW, "levers": {area.name: asdict(settings.recipe(area).levers) for area in AREAS}},
             metrics={"validation": figures},
         )
         save_card(path, card)

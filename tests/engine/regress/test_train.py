@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,11 +9,15 @@ import torch
 from safetensors.torch import load_file
 
 from engine.performance import demo
-from engine.regress.areas import AREAS
-from engine.regress.train import Settings, train
+from engine.performance.augment import Levers
+from engine.regress.areas import AREAS, EXTENDED_AREAS
+from engine.regress.train import Recipe, Settings, train
 
-WIDTHS = {area.name: (4, 4, 4) for area in AREAS}
-TINY = Settings(window=32, epochs=(2, 2), widths=WIDTHS, synthetic_minutes=0.0)
+ALL = (*AREAS, *EXTENDED_AREAS)
+
+LEVERS = Levers(copies=1)
+RECIPES = {area.name: Recipe((4, 4, 4), (2, 2), levers=LEVERS) for area in ALL}
+TINY = Settings(window=32, recipes=RECIPES, synthetic_minutes=0.0)
 
 
 @pytest.fixture
@@ -23,7 +28,7 @@ def recordings(tmp_path: Path) -> Path:
 
 
 def _models(folder: Path) -> dict[str, dict[str, torch.Tensor]]:
-    return {area.name: load_file(folder / f"regress_{area.name}.safetensors") for area in AREAS}
+    return {area.name: load_file(folder / f"regress_{area.name}.safetensors") for area in ALL}
 
 
 def test_a_run_that_was_stopped_ends_as_one_that_was_not(recordings: Path, tmp_path: Path) -> None:
@@ -37,7 +42,7 @@ def test_a_run_that_was_stopped_ends_as_one_that_was_not(recordings: Path, tmp_p
 
         return report
 
-    for moment in ("lower regressor 1/", "lower autoencoder 1/", "eyelids autoencoder 2/"):
+    for moment in ("lower regressor 1/", "lower autoencoder 1/", "gaze autoencoder 2/"):
         with pytest.raises(KeyboardInterrupt):
             train(recordings, stopped, TINY, report=stop_in(moment))
         assert list(stopped.glob("*.partial.safetensors"))
@@ -58,5 +63,5 @@ def test_other_settings_begin_anew(recordings: Path, tmp_path: Path) -> None:
 
     with pytest.raises(KeyboardInterrupt):
         train(recordings, tmp_path, TINY, report=stop)
-    train(recordings, tmp_path, Settings(seed=1, window=32, epochs=(1, 1), widths=WIDTHS), report=lines.append)
+    train(recordings, tmp_path, replace(TINY, seed=1), report=lines.append)
     assert not any("going on" in line for line in lines)
