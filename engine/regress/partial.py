@@ -22,13 +22,13 @@ class Standing:
     Attributes
     ----------
     stage, epoch : stage under way and how many of its epochs are done
-    best : validation terms of the best epoch of the stage
+    terms : validation terms of the last epoch that is done
     figures : validation terms of the stages that are finished
     """
 
     stage: int = 0
     epoch: int = 0
-    best: dict[str, float] = field(default_factory=dict)
+    terms: dict[str, float] = field(default_factory=dict)
     figures: dict[str, float] = field(default_factory=dict)
 
 
@@ -38,12 +38,10 @@ def save(
     *,
     run: dict[str, Any],
     network: torch.nn.Module,
-    best: dict[str, Tensor],
     optimizer: torch.optim.Optimizer,
 ) -> None:
     """Write everything that the next epoch depends on; `run` names settings and data, which must be the same later."""
     tensors = {f"network.{name}": value for name, value in network.state_dict().items()}
-    tensors |= {f"best.{name}": value for name, value in best.items()}
     for index, state in optimizer.state_dict()["state"].items():
         tensors |= {f"optimizer.{index}.{name}": value for name, value in state.items()}
     save_model(path, tensors, kind=KIND, config={"standing": asdict(standing), "run": run})
@@ -57,7 +55,7 @@ def load(path: Path, *, run: dict[str, Any]) -> tuple[Standing, dict[str, dict[s
         return None
     if config["run"] != run:
         return None
-    groups: dict[str, dict[str, Tensor]] = {"network": {}, "best": {}, "optimizer": {}}
+    groups: dict[str, dict[str, Tensor]] = {"network": {}, "optimizer": {}}
     for name, value in tensors.items():
         group, rest = name.split(".", 1)
         groups[group][rest] = value
