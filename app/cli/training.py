@@ -10,8 +10,11 @@ from rich.console import Console
 
 from engine.errors import EngineError
 
-NETWORKS = ("regress", "regress_baselines")
-ELSEWHERE = {"regress_baselines": "engine.evaluate.baselines.train"}  # the others are engine.NAME.train
+NETWORKS = ("regress", "regress_baselines", "regress_study")
+ELSEWHERE = {  # the others are engine.NAME.train
+    "regress_baselines": "engine.evaluate.baselines.train",
+    "regress_study": "engine.evaluate.study",
+}
 ASSETS = ("demo", "head")
 
 

@@ -16,6 +16,8 @@ Report = Callable[[str], None]
 TABLES: dict[str, str] = {
     "regress": "Control curves to weights: mean squared error, closures (BSBS19 table 1, figure 8)",
     "regress_edits": "Requests that no face fits: how like a recording the result is (BSBS19 section 5.3)",
+    "regress_takes": "The regressor on each recorded take, trained on all others",
+    "regress_levers": "What each augmentation and loss term does for the regressor",
 }
 
 

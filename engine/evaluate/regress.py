@@ -73,10 +73,11 @@ def table(data: Path | None, report: Report) -> list[Row]:
     takes have no closure at all, an error where they do not animate the area.
     """
     pieces = pieces_to_measure(data)
-    return [{"method": name} | _figures(method, pieces) for name, method in methods(report).items()]
+    return [{"method": name} | figures_of(method, pieces) for name, method in methods(report).items()]
 
 
-def _figures(method: Method, pieces: Sequence[Piece]) -> Row:
+def figures_of(method: Method, pieces: Sequence[Piece]) -> Row:
+    """Return the metrics of one row of `table`."""
     made = [played(method, piece) for piece in pieces]
     faces = [index for index, piece in enumerate(pieces) if piece.whole_face]
     figures: Row = {}
