@@ -168,12 +168,12 @@ class MainWindow(QMainWindow):
         row = QHBoxLayout(bar)
         row.setContentsMargins(GRID + 2, 3, GRID + 2, 3)
         row.setSpacing(3 * GRID)
-        self.status = {name: QLabel() for name in ("take", "rate", "length", "place", "engine", "saved", "speed")}
+        self.status = {
+            name: QLabel() for name in ("take", "rate", "length", "place", "notice", "engine", "saved", "speed")
+        }
         for name, label in self.status.items():
             label.setProperty("quiet", name != "take")
-            if name == "engine":
-                row.addStretch(1)
-            row.addWidget(label)
+            row.addWidget(label, 1 if name == "notice" else 0)
         self.status["engine"].setText("loading networks…")
         return bar
 
@@ -204,8 +204,7 @@ class MainWindow(QMainWindow):
         self.transport.run(0.0)
         self.session.open(take, path)
         self.notices.hide()
-        for notice in take.notices:
-            self.notices.tell(notice)
+        self.status["notice"].setText(" ".join(take.notices))
         self._show_title()
 
     def load(self, path: Path, *_: object) -> bool:

@@ -85,6 +85,8 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             self._draw()
         if change & (Change.TAKE | Change.PLAYHEAD | Change.CURVES | Change.DRAFT):
             self._show_playhead()
+        if change & Change.DRAFT:
+            self.tool.refresh()
         if change & (Change.TAKE | Change.SELECTION):
             self._underlay.selection = self.session.selection
             self._underlay.spans = [(float(a), float(b)) for a, b in runs(self.session.take.lost)]

@@ -38,6 +38,9 @@ class Tool(Protocol):
     def cancel(self) -> None:
         """Drop what is under way."""
 
+    def refresh(self) -> None:
+        """Show the result that has come in."""
+
 
 class DragTool:
     """Pull a curve anywhere; a soft brush bends it and the face follows."""
@@ -102,6 +105,11 @@ class DragTool:
             self._panel.inference.cancel()
             self._panel.show_brush(None, None)
             self._panel.show_readout("", QPointF())
+
+    def refresh(self) -> None:
+        """Let handle and read-out follow the face, which answers a moment after the pointer."""
+        if self._lane is not None and self._panel.session.draft is not None:
+            self._hint(self._lane, self._centre, self._from)
 
     def _ask(self) -> None:
         assert self._lane is not None
