@@ -23,7 +23,7 @@ def at(window: MainWindow, lane: int, frame: float, value: float) -> QPoint:
 
 
 def gesture(qtbot: QtBot, window: MainWindow, *points: QPoint) -> None:
-    area, steps = window.curves.viewport(), window.session.undo.count()
+    area, steps = window.curves.viewport(), window.session.undo.index()
     QTest.mouseMove(area, points[0])
     QTest.mousePress(area, LEFT, PLAIN, points[0])
     for point in points[1:]:
