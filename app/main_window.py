@@ -38,7 +38,7 @@ from app.preview.panel import PreviewPanel
 from app.session import Change, Session
 from app.settings import Settings
 from app.theme import GRID
-from app.timeline.panel import Timeline, TimeScroll
+from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
 from engine.errors import EngineError
 from engine.formats import FORMATS, read_take, write_take
@@ -146,10 +146,11 @@ class MainWindow(QMainWindow):
         area.setWidgetResizable(True)
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
         area.setWidget(self.curves)
         stack.addWidget(area, 1)
         scroll = QHBoxLayout()
-        scroll.setContentsMargins(GUTTER_PX, 0, GRID, 0)
+        scroll.setContentsMargins(GUTTER_PX, 0, GRID + SCROLL_PX, 0)
         scroll.addWidget(TimeScroll(self.session))
         stack.addLayout(scroll)
         split = QSplitter(Qt.Orientation.Horizontal)

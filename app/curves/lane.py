@@ -32,11 +32,11 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         area = QRectF(self.rect()).adjusted(GRID, 2, -GRID, -2)
         middle = area.center().y()
         font = QFont(painter.font())
-        font.setPixelSize(12)
+        font.setPixelSize(11 if self._curve.is_weight else 12)
         font.setBold(self.active)
         painter.setFont(font)
         painter.setPen(self.colour)
-        name_box = QRectF(area.left(), middle - 17, area.width() - 34, 17)
+        name_box = QRectF(area.left(), middle - 17, area.width() - (0 if self._curve.is_weight else 30), 17)
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
         mark = "" if self._curve.is_weight else "▾ " if self.expanded else "▸ "
         indent = INDENT_PX if self._curve.is_weight else 0
@@ -51,7 +51,7 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         painter.setPen(self.quiet)
         low, high = self.range
         right = Qt.AlignmentFlag.AlignRight
-        if area.height() > 26:
+        if area.height() > 26 and not self._curve.is_weight:
             painter.drawText(area, right | Qt.AlignmentFlag.AlignTop, f"{high:.0f}")
             painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, f"{low:.0f}")
 
