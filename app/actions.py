@@ -40,7 +40,13 @@ ACTIONS: tuple[Action, ...] = (
     Action("cancel", "Drop what is under way", "Edit", ("Escape",), twin="Ctrl+C"),
     Action("wider_brush", "Wider brush", "Edit", ("]",), twin="retake edit --frames"),
     Action("narrower_brush", "Narrower brush", "Edit", ("[",), twin="retake edit --frames"),
+    Action("copy", "Copy", "Edit", ("Ctrl+C",), twin="works with paste in the window"),
+    Action("paste", "Paste at the playhead", "Edit", ("Ctrl+V",), twin="works with copy in the window"),
     Action("drag_tool", "Drag", "Tools", ("V",), "Drag", True, twin="retake edit"),
+    Action("draw_tool", "Draw", "Tools", ("D",), "Draw", True, twin="retake edit --set"),
+    Action("scale_tool", "Scale", "Tools", ("S",), "Scale", True, twin="retake edit --scale"),
+    Action("smooth", "Smooth", "Tools", ("Ctrl+B",), twin="retake smooth"),
+    Action("expand_lane", "Show or hide the weights below", "View", ("W",)),
     Action("play", "Play or pause", "Playback", ("Space",), "▶", True, twin="retake render -o OUT.mp4"),
     Action("play_backwards", "Play backwards", "Playback", ("J",)),
     Action("stop", "Stop", "Playback", ("K",)),
@@ -67,7 +73,7 @@ ACTIONS: tuple[Action, ...] = (
 TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("open_take", "save"),
     ("undo", "redo"),
-    ("drag_tool",),
+    ("drag_tool", "draw_tool", "scale_tool"),
     ("play", "loop"),
 )
 MENUS: tuple[str, ...] = ("File", "Edit", "Tools", "Playback", "View", "Help")

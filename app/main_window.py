@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
@@ -16,6 +17,7 @@ from PySide6.QtWidgets import (
     QLabel,
     QMainWindow,
     QMessageBox,
+    QScrollArea,
     QSplitter,
     QToolButton,
     QVBoxLayout,
@@ -24,21 +26,26 @@ from PySide6.QtWidgets import (
 
 from app import theme
 from app.actions import ACTIONS, MENUS, TOOLBAR
+from app.curve_table import CURVES
+from app.curves.brush import eased_to
 from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
+from app.curves.tools import TOOLS
 from app.inference import Inference
-from app.inspector.panel import Inspector
+from app.inspector.panel import Inspector, closes
 from app.notices import Notices
 from app.preview.panel import PreviewPanel
 from app.session import Change, Session
 from app.settings import Settings
 from app.theme import GRID
-from app.timeline.panel import Timeline, TimeScroll
+from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
-from engine.controls import CONTROLS
 from engine.errors import EngineError
 from engine.formats import FORMATS, read_take, write_take
-from engine.take import Take, runs, timecode
+from engine.take import Array, Take, runs, timecode
+
+if TYPE_CHECKING:
+    from engine.editing import Dragger, Patch
 
 EASE_FRAMES = 5
 HINTS = "Drag any curve up or down: the face follows.   Hatched: frames the tracker lost.   Space plays."
@@ -67,6 +74,7 @@ class MainWindow(QMainWindow):
         self.inspector = Inspector(self.session)
         self._latencies_ms: list[float] = []
         self._saved_view = ""
+        self._copied: Array | None = None
         self.setAcceptDrops(True)
         self._make_actions()
         self._lay_out()
@@ -92,7 +100,7 @@ class MainWindow(QMainWindow):
             if title == "File":
                 self._recent = menu.addMenu("Open recent")
                 self._recent.aboutToShow.connect(self._fill_recent)
-        self.actions_by_name["drag_tool"].setChecked(True)
+        self._show_tool()
         self.actions_by_name["light_theme"].setChecked(self.settings.light)
 
     def _toolbar(self) -> QFrame:
@@ -134,9 +142,15 @@ class MainWindow(QMainWindow):
         stack.setContentsMargins(1, 6, 1, 4)
         stack.setSpacing(2)
         stack.addWidget(self.timeline)
-        stack.addWidget(self.curves, 1)
+        area = QScrollArea()
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
+        area.setWidget(self.curves)
+        stack.addWidget(area, 1)
         scroll = QHBoxLayout()
-        scroll.setContentsMargins(GUTTER_PX, 0, GRID, 0)
+        scroll.setContentsMargins(GUTTER_PX, 0, GRID + SCROLL_PX, 0)
         scroll.addWidget(TimeScroll(self.session))
         stack.addLayout(scroll)
         split = QSplitter(Qt.Orientation.Horizontal)
@@ -168,12 +182,12 @@ class MainWindow(QMainWindow):
         row = QHBoxLayout(bar)
         row.setContentsMargins(GRID + 2, 3, GRID + 2, 3)
         row.setSpacing(3 * GRID)
-        self.status = {name: QLabel() for name in ("take", "rate", "length", "place", "engine", "saved", "speed")}
+        self.status = {
+            name: QLabel() for name in ("take", "rate", "length", "place", "notice", "engine", "saved", "speed")
+        }
         for name, label in self.status.items():
             label.setProperty("quiet", name != "take")
-            if name == "engine":
-                row.addStretch(1)
-            row.addWidget(label)
+            row.addWidget(label, 1 if name == "notice" else 0)
         self.status["engine"].setText("loading networks…")
         return bar
 
@@ -186,6 +200,9 @@ class MainWindow(QMainWindow):
         self.transport.changed.connect(self._show_transport)
         self.inspector.close_here.connect(self.close_here)
         self.inspector.value_typed.connect(self.set_value)
+        self.inspector.cutoff_moved.connect(self.preview_smoothing)
+        self.inspector.smooth.connect(self.smooth)
+        self.inspector.dropped.connect(self.inference.cancel)
         self.session.undo.indexChanged.connect(self._show_undo)
         self._show_undo()
         application = QApplication.instance()
@@ -204,8 +221,7 @@ class MainWindow(QMainWindow):
         self.transport.run(0.0)
         self.session.open(take, path)
         self.notices.hide()
-        for notice in take.notices:
-            self.notices.tell(notice)
+        self.status["notice"].setText(" ".join(take.notices))
         self._show_title()
 
     def load(self, path: Path, *_: object) -> bool:
@@ -316,30 +332,29 @@ class MainWindow(QMainWindow):
             self.session.undo.redo()
 
     def cancel(self) -> None:
-        """Drop the drag under way."""
+        """Drop the gesture or the preview of a filter under way."""
         self.curves.tool.cancel()
+        if self.inference.busy:
+            self.inference.cancel()
 
     def close_here(self) -> None:
         """Bring lips or eyelids together on the selection, or around the playhead."""
-        control = CONTROLS[self.session.lane]
-        if control.name == "lips_vertical" or control.area == "eyelids":
-            self._set_control(0.0, f"close {control.title}")
+        if closes(self.session.lane):
+            self._set_curve(0.0, f"close {CURVES[self.session.lane].title}")
 
     def set_value(self, value_mm: float) -> None:
-        """Set the active control at the playhead, or over the selection, to a value."""
-        self._set_control(value_mm, f"set {CONTROLS[self.session.lane].title} to {value_mm:g} mm")
+        """Set the active curve at the playhead, or over the selection, to a value."""
+        curve = CURVES[self.session.lane]
+        self._set_curve(value_mm, f"set {curve.title} to {curve.shown(value_mm)}")
 
-    def _set_control(self, value_mm: float, title: str) -> None:
-        from engine.editing import ask
-
+    def _set_curve(self, value: float, title: str) -> None:
         session = self.session
         if self.inference.busy:
             return
         frames = session.selection or (session.playhead, session.playhead + 1)
         ease_frames = EASE_FRAMES if session.selection else session.radius_frames
-        name = CONTROLS[session.lane].name
-        start, asked = ask(session.controls, name, frames, "set", value_mm, ease_frames=ease_frames)
-        self.inference.ask(start, asked)
+        start, asked = eased_to(session.curve(session.lane), frames, value, ease_frames=ease_frames)
+        self.curves.tool.ask(session.lane, start, asked)
         self.inference.finish(title)
 
     def wider_brush(self) -> None:
@@ -352,7 +367,63 @@ class MainWindow(QMainWindow):
 
     def drag_tool(self) -> None:
         """Work with the Drag tool."""
-        self.actions_by_name["drag_tool"].setChecked(True)
+        self.session.choose_tool("drag")
+        self._show_tool()
+
+    def draw_tool(self) -> None:
+        """Work with the Draw tool."""
+        self.session.choose_tool("draw")
+        self._show_tool()
+
+    def scale_tool(self) -> None:
+        """Work with the Scale tool."""
+        self.session.choose_tool("scale")
+        self._show_tool()
+
+    def _show_tool(self) -> None:
+        for name in TOOLS:
+            self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
+
+    def expand_lane(self) -> None:
+        """Show the weights under the active control, or put them away."""
+        self.session.expand(self.session.lane)
+
+    def copy(self) -> None:
+        """Remember the weights of the selection, or of the frame at the playhead."""
+        session = self.session
+        start, stop = session.selection or (session.playhead, session.playhead + 1)
+        self._copied = session.take.weights[start:stop]
+        self.status["notice"].setText(f"copied {stop - start} frames")
+
+    def paste(self) -> None:
+        """Put what was copied in place from the playhead on."""
+        copied, start = self._copied, self.session.playhead
+        if copied is None or self.inference.busy:
+            return
+
+        def verb(dragger: Dragger) -> Patch:
+            from engine.retouch import paste
+
+            return paste(dragger.take, start, copied)
+
+        self.inference.run(verb)
+        self.inference.finish(f"paste {len(copied)} frames")
+
+    def preview_smoothing(self, cutoff_hz: float) -> None:
+        """Show what a Butterworth filter does to the selection, or the whole take."""
+        frames = self.session.selection or (0, len(self.session.take))
+
+        def verb(dragger: Dragger) -> Patch:
+            from engine.retouch import smooth
+
+            return smooth(dragger.take, frames, cutoff_hz)
+
+        self.inference.run(verb)
+
+    def smooth(self) -> None:
+        """Keep the smoothing at the cutoff that the inspector shows."""
+        self.preview_smoothing(self.inspector.cutoff.value())
+        self.inference.finish(f"smooth at {self.inspector.cutoff.value():g} Hz")
 
     # --- time
 

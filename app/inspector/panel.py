@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.curve_table import CURVES
 from app.session import Change, Session
 from app.theme import GRID
 from engine.controls import CONTROLS
@@ -36,7 +37,10 @@ class Inspector(QFrame):
     """
 
     close_here = Signal()
-    value_typed = Signal(float)  # mm, for the lane that is worked on at the playhead
+    value_typed = Signal(float)  # for the curve that is worked on, at the playhead
+    cutoff_moved = Signal(float)  # Hz, while it moves
+    smooth = Signal()
+    dropped = Signal()  # the preview of a filter is not wanted
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -48,6 +52,7 @@ class Inspector(QFrame):
         column.setSpacing(GRID)
         self._brush(column)
         self._value(column)
+        self._filter(column)
         self._spans(column)
         self._edit(column)
         column.addStretch(1)
@@ -91,9 +96,40 @@ class Inspector(QFrame):
         column.addWidget(self.close_button)
 
     def _typed(self) -> None:
-        shown = float(self._session.shown_controls(self._session.playhead)[self._session.lane])
-        if abs(self.value.value() - round(shown, 1)) > 0.04:
+        shown = self._session.value(self._session.lane, self._session.playhead)
+        if abs(self.value.value() - round(shown, self.value.decimals())) > 0.4 * 10.0 ** -self.value.decimals():
             self.value_typed.emit(self.value.value())
+
+    def _filter(self, column: QVBoxLayout) -> None:
+        column.addSpacing(GRID)
+        column.addWidget(_heading("Smooth"))
+        self.cutoff = QDoubleSpinBox()
+        self.cutoff.setDecimals(1)
+        self.cutoff.setSuffix(" Hz")
+        self.cutoff.setToolTip("Butterworth, zero phase: peaks stay where they are. The selection, or the whole take.")
+        self._cutoff_slider = _slider(5, 140)
+        _row(column, "Cutoff", self.cutoff)
+        column.addWidget(self._cutoff_slider)
+        row = QHBoxLayout()
+        self.smooth_button, self.drop_button = QPushButton("Apply"), QPushButton("Drop")
+        row.addWidget(self.smooth_button)
+        row.addWidget(self.drop_button)
+        column.addLayout(row)
+        self._cutoff_slider.valueChanged.connect(self._slide_cutoff)
+        self.cutoff.valueChanged.connect(self.cutoff_moved)
+        self.smooth_button.clicked.connect(self.smooth)
+        self.drop_button.clicked.connect(self.dropped)
+
+    def _slide_cutoff(self, value: int) -> None:
+        self.cutoff.setValue(value / 10)
+
+    def _show_cutoff(self) -> None:
+        highest = 0.45 * self._session.take.fps
+        with QSignalBlocker(self.cutoff), QSignalBlocker(self._cutoff_slider):
+            self.cutoff.setRange(0.5, highest)
+            self._cutoff_slider.setRange(5, int(10 * highest))
+            self.cutoff.setValue(min(6.0, highest))
+            self._cutoff_slider.setValue(int(10 * self.cutoff.value()))
 
     def _spans(self, column: QVBoxLayout) -> None:
         column.addSpacing(GRID)
@@ -116,6 +152,7 @@ class Inspector(QFrame):
         if change & (Change.TAKE | Change.TOOL):
             self._show_brush()
         if change & Change.TAKE:
+            self._show_cutoff()
             self._show_spans()
         if change & (Change.TAKE | Change.LANE | Change.PLAYHEAD | Change.CURVES | Change.DRAFT):
             self._show_value()
@@ -137,12 +174,15 @@ class Inspector(QFrame):
             self.exact.setChecked(session.exact)
 
     def _show_value(self) -> None:
-        session, control = self._session, CONTROLS[self._session.lane]
-        self._lane_title.setText(control.title[0].upper() + control.title[1:])
-        self.close_button.setVisible(control.name == "lips_vertical" or control.area == "eyelids")
+        session, curve = self._session, CURVES[self._session.lane]
+        self._lane_title.setText(curve.title[0].upper() + curve.title[1:])
+        self.close_button.setVisible(closes(session.lane))
+        self.value.setDecimals(2 if curve.is_weight else 1)
+        self.value.setSingleStep(0.05 if curve.is_weight else 0.5)
+        self.value.setSuffix("" if curve.is_weight else f" {curve.unit}")
         if not self.value.hasFocus():
             with QSignalBlocker(self.value):
-                self.value.setValue(float(session.shown_controls(session.playhead)[session.lane]))
+                self.value.setValue(session.value(session.lane, session.playhead))
 
     def _show_spans(self) -> None:
         while (item := self._span_box.takeAt(0)) is not None:
@@ -189,6 +229,13 @@ def _slider(lowest: int, highest: int) -> QSlider:
     slider = QSlider(Qt.Orientation.Horizontal)
     slider.setRange(lowest, highest)
     return slider
+
+
+def closes(lane: int) -> bool:
+    """Return whether a curve is a distance that can be closed: the lips', or an eye's."""
+    curve = CURVES[lane]
+    control = CONTROLS[curve.column] if not curve.is_weight else None
+    return control is not None and (control.name == "lips_vertical" or control.area == "eyelids")
 
 
 def _heading(text: str) -> QLabel:

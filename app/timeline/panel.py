@@ -11,6 +11,7 @@ from app.theme import GRID, Palette
 from engine.take import runs, timecode
 
 RULER_PX, SPANS_PX, LABEL_PX = 26, 22, 76
+SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 
 
@@ -49,7 +50,7 @@ class Timeline(QWidget):
     # --- geometry
 
     def _span_px(self) -> float:
-        return max(1.0, self.width() - self._gutter - GRID)
+        return max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
 
     def x_of(self, frame: float) -> float:
         """Return the position of a frame in the widget."""
