@@ -35,9 +35,9 @@ Report = Callable[[str], None]
 _WIDTHS = (16, 32, 64)
 SHORT = Settings(
     recipes={
-        "lower": Recipe(_WIDTHS, (6, 5), 2e-3, Levers(copies=1)),
-        "upper": Recipe(_WIDTHS, (5, 5), 5e-4, Levers(copies=3, gain=0.6, mix=0.5, recombine=0.5)),
-        "eyelids": Recipe(_WIDTHS, (5, 5), 5e-4, Levers(copies=3, gain=0.6, mix=0.5, recombine=0.5)),
+        "lower": Recipe(_WIDTHS, (6, 5), (2e-3, 2e-3), Levers(copies=1)),
+        "upper": Recipe(_WIDTHS, (5, 5), (5e-4, 2e-3), Levers(copies=3, gain=0.6, mix=0.5, recombine=0.5)),
+        "eyelids": Recipe(_WIDTHS, (5, 5), (5e-4, 2e-3), Levers(copies=3, gain=0.6, mix=0.5, recombine=0.5)),
     }
 )
 LEFT_OUT = ("S07-001", "1114_2_05")  # training takes that the study of levers measures on

@@ -20,8 +20,8 @@ from engine.performance.corpus import synthetic_performances
 from engine.regress.areas import Area
 from engine.take import SHAPES, Array
 
-NEAREST = 8  # real faces that the target of an impossible request is the mean of
-BANK = 40_000  # faces among which they are looked for
+NEAREST = 6  # real faces that the target of an impossible request is the mean of
+BANK = 12_000  # faces among which they are looked for
 
 
 @dataclass(frozen=True)

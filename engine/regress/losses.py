@@ -34,6 +34,10 @@ class Distances(torch.nn.Module):
 
 
 def distance_error(made: Tensor, asked: Tensor, closure_gain: float) -> Tensor:
-    """Return the mean squared error of distances, in mm^2, raised by up to `closure_gain` where they should close."""
-    urgency = 1.0 + closure_gain * torch.exp(-((asked / CLOSED_MM) ** 2))
+    """Return the mean squared error of distances, in mm^2, raised by up to `closure_gain` where lips or lids meet.
+
+    Where they should meet and where they do: a closure invented weighs like a closure missed.
+    """
+    nearer = torch.minimum(made.detach(), asked)
+    urgency = 1.0 + closure_gain * torch.exp(-((nearer / CLOSED_MM) ** 2))
     return (urgency * (made - asked).square()).mean()

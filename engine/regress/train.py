@@ -44,12 +44,12 @@ class Recipe:
     Attributes
     ----------
     epochs : of the regressor, of the autoencoder
-    rate : Adam's at first; it falls along half a cosine, so that the last epochs settle
+    rates : Adam's at first; they fall along half a cosine, so that the last epochs settle
     """
 
     widths: tuple[int, int, int] = (8, 16, 32)
     epochs: tuple[int, int] = (20, 20)
-    rate: float = 1e-3
+    rates: tuple[float, float] = (1e-3, 1e-3)
     levers: Levers = field(default_factory=Levers)
 
 
@@ -57,9 +57,9 @@ class Recipe:
 # a slow start from ridge regression, or the network learns who was recorded.
 _PEOPLE = Levers(gain=0.6, mix=0.5, recombine=0.5)
 RECIPES = {
-    "lower": Recipe((32, 64, 128), (50, 40), 1e-3, Levers(copies=3)),
-    "upper": Recipe((16, 32, 64), (20, 20), 2e-4, _PEOPLE),
-    "eyelids": Recipe((16, 32, 64), (20, 20), 2e-4, _PEOPLE),
+    "lower": Recipe((32, 64, 128), (40, 25), (1e-3, 1e-3), Levers(copies=3)),
+    "upper": Recipe((16, 32, 64), (15, 30), (2e-4, 2e-3), _PEOPLE),
+    "eyelids": Recipe((16, 32, 64), (15, 30), (2e-4, 2e-3), _PEOPLE),
 }
 
 
@@ -73,8 +73,8 @@ class Settings:
     recipes: dict[str, Recipe] = field(default_factory=lambda: dict(RECIPES))
     weight_penalty: float = 1e-6
     salt_and_pepper: float = 0.2
-    noisy_share: float = 0.25  # an autoencoder that only ever sees noise forgets closures
-    misfit_share: float = 0.25  # windows with a request no face fits; their target is the nearest real face
+    noisy_share: float = 0.3  # an autoencoder that only ever sees noise forgets closures
+    misfit_share: float = 0.3  # windows with a request no face fits; their target is the nearest real face
     distance_share: float = 0.002  # per mm^2, so that 1 mm of lips weighs like 0.045 of a weight
     closure_gain: float = 4.0
     velocity_share: float = 1.0
@@ -179,15 +179,14 @@ class AreaTrainer:
         part: UNet = getattr(self.network, STAGES[standing.stage])
         self.network.requires_grad_(False)
         part.requires_grad_(True)
-        optimizer = torch.optim.Adam(
-            part.parameters(), lr=self._recipe.rate, weight_decay=self._settings.weight_penalty
-        )
+        rate = self._recipe.rates[standing.stage]
+        optimizer = torch.optim.Adam(part.parameters(), lr=rate, weight_decay=self._settings.weight_penalty)
         if saved is not None:
             partial.restore_optimizer(optimizer, saved["optimizer"])
         epochs = self._recipe.epochs[standing.stage]
         for epoch in range(standing.epoch, epochs):
             began = time.monotonic()
-            optimizer.param_groups[0]["lr"] = self._recipe.rate * 0.5 * (1 + math.cos(math.pi * epoch / epochs))
+            optimizer.param_groups[0]["lr"] = rate * 0.5 * (1 + math.cos(math.pi * epoch / epochs))
             self._epoch(standing.stage, epoch, optimizer)
             terms = self._validate(standing.stage)
             standing.epoch, standing.terms = epoch + 1, terms
@@ -238,18 +237,17 @@ class AreaTrainer:
     def _losses(self, made: Tensor, batch: _Batch) -> dict[str, Tensor]:
         """Return every term by name: weights, distances (equation 1) and velocity, the last two where there is truth."""
         settings, true = self._settings, batch.true
-        whole = batch.weights[true].index_copy(1, self._columns, made[true])
+        terms = {"mse": (made - batch.target).square().mean()}
         near = self._controls < len(CONTROLS)  # angles and brows are left to the error of the weights
-        reached = self._distances(whole)[:, self._controls[near]]
-        velocity = (made[true].diff(dim=2) - batch.target[true].diff(dim=2)).square().mean()
-        distance = (
-            distance_error(reached, batch.asked[true][:, near], settings.closure_gain) if near.any() else made.sum() * 0
-        )
-        return {
-            "mse": (made - batch.target).square().mean(),
-            "distance": settings.distance_share * distance,
-            "velocity": settings.velocity_share * velocity,
-        }
+        if near.any() and true.any():
+            whole = batch.weights[true].index_copy(1, self._columns, made[true])
+            reached = self._distances(whole)[:, self._controls[near]]
+            distance = distance_error(reached, batch.asked[true][:, near], settings.closure_gain)
+            terms["distance"] = settings.distance_share * distance
+        if true.any():
+            velocity = (made[true].diff(dim=2) - batch.target[true].diff(dim=2)).square().mean()
+            terms["velocity"] = settings.velocity_share * velocity
+        return terms
 
     def _validate(self, stage: int) -> dict[str, float]:
         """Return the loss terms on the validation windows; the autoencoder's are those of mixed requests, always alike."""
