@@ -48,18 +48,18 @@ class Recipe:
     """
 
     widths: tuple[int, int, int] = (8, 16, 32)
-    epochs: tuple[int, int] = (20, 20)
-    rates: tuple[float, float] = (1e-3, 1e-3)
-    levers: Levers = field(default_factory=Levers)
+    epochs: tuple[int, int] = (10, 10)
+    rates: tuple[float, float] = (2e-3, 2e-3)
+    levers: Levers = field(default_factory=lambda: Levers(copies=2))
 
 
 # Brows and lids differ more between people than the mouth does, and controls say less of them: stronger augmentation and
 # a slow start from ridge regression, or the network learns who was recorded.
-_PEOPLE = Levers(gain=0.6, mix=0.5, recombine=0.5)
+_PEOPLE = Levers(copies=3, gain=0.6, mix=0.5, recombine=0.5)
 RECIPES = {
     "lower": Recipe((32, 64, 128), (40, 25), (1e-3, 1e-3), Levers(copies=3)),
-    "upper": Recipe((16, 32, 64), (15, 30), (2e-4, 2e-3), _PEOPLE),
-    "eyelids": Recipe((16, 32, 64), (15, 30), (2e-4, 2e-3), _PEOPLE),
+    "upper": Recipe((16, 32, 64), (12, 20), (2e-4, 2e-3), _PEOPLE),
+    "eyelids": Recipe((16, 32, 64), (12, 20), (2e-4, 2e-3), _PEOPLE),
 }
 
 
