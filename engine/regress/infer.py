@@ -10,7 +10,7 @@ import torch
 
 from engine.controls import CONTROLS
 from engine.models.checkpoint import MODELS, load_model
-from engine.regress.areas import AREAS, EXTENDED_AREAS
+from engine.regress.areas import AREAS, EXTENDED_AREAS, Area
 from engine.regress.network import ALIGNMENT, REACH, AreaNetwork, from_config
 from engine.take import SHAPES, Array
 
@@ -20,7 +20,7 @@ class Regressor:
 
     Parameters
     ----------
-    networks : by area name, in evaluation mode
+    networks : by area name, put in evaluation mode; shapes of an area without one come out as zero
     """
 
     def __init__(self, networks: dict[str, AreaNetwork]) -> None:
@@ -38,11 +38,14 @@ class Regressor:
         held = np.pad(controls, ((0, -frames % ALIGNMENT), (0, 0)), mode="edge")
         weights = np.zeros((frames, len(SHAPES)))
         with torch.inference_mode():
-            for area in AREAS if controls.shape[1] == len(CONTROLS) else (*AREAS, *EXTENDED_AREAS):
+            for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
                 columns = torch.from_numpy(held[:, area.control_columns].T.astype(np.float32))
                 made = self._networks[area.name](columns[None], full=full)[0]
                 weights[:, area.shape_columns] = made.numpy().T[:frames]
         return weights
+
+    def _areas(self, *, extended: bool) -> list[Area]:
+        return [area for area in AREAS + EXTENDED_AREAS * extended if area.name in self._networks]
 
     def infer_range(self, controls: Array, start: int, stop: int, *, full: bool = True) -> Array:
         """Return rows [start, stop) of `infer(controls)`, looking no further than the networks can feel."""
