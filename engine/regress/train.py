@@ -53,13 +53,13 @@ class Recipe:
     levers: Levers = field(default_factory=lambda: Levers(copies=2))
 
 
-# Brows and lids differ more between people than the mouth does, and controls say less of them: stronger augmentation and
-# a slow start from ridge regression, or the network learns who was recorded.
-_PEOPLE = Levers(copies=3, gain=0.6, mix=0.5, recombine=0.5)
+# Brows and lids differ more between people than the mouth does, and controls say less of them: without more people, drawn
+# anew every few seconds, the network learns who was recorded.
+_PEOPLE = Levers(copies=3, gain=0.4, mix=0.5, recombine=0.5, stretch=256)
 RECIPES = {
     "lower": Recipe((32, 64, 128), (40, 25), (1e-3, 1e-3), Levers(copies=3)),
-    "upper": Recipe((16, 32, 64), (12, 20), (2e-4, 2e-3), _PEOPLE),
-    "eyelids": Recipe((16, 32, 64), (12, 20), (2e-4, 2e-3), _PEOPLE),
+    "upper": Recipe((16, 32, 64), (10, 16), (1e-3, 2e-3), _PEOPLE),
+    "eyelids": Recipe((16, 32, 64), (10, 16), (1e-3, 2e-3), _PEOPLE),
 }
 
 
