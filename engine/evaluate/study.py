@@ -25,19 +25,18 @@ from engine.formats.atomic import write_bytes
 from engine.models.checkpoint import MODELS
 from engine.performance.augment import Levers
 from engine.regress.areas import AREAS
-from engine.regress.data import cut, source
+from engine.regress.data import cut
 from engine.regress.infer import Regressor
-from engine.regress.train import Recipe, Settings, train_area
+from engine.regress.train import Recipe, Settings, material_of, train_area
 
 Row = dict[str, Any]
 Report = Callable[[str], None]
 
 _WIDTHS = (16, 32, 64)
-_PEOPLE = Recipe(_WIDTHS, (3, 3), (5e-4, 2e-3), Levers(copies=1, gain=0.6, mix=0.5, recombine=0.5))
+_PEOPLE = Recipe(_WIDTHS, (3, 3), (5e-4, 2e-3), Levers(copies=1, gain=0.6, mix=0.5, recombine=0.5), 4.0)
 SHORT = Settings(
-    synthetic_minutes=4.0,
     recipes={
-        "lower": Recipe(_WIDTHS, (3, 3), (2e-3, 2e-3), Levers(copies=1)),
+        "lower": Recipe(_WIDTHS, (3, 3), (2e-3, 2e-3), Levers(copies=1), 4.0),
         "upper": _PEOPLE,
         "eyelids": _PEOPLE,
     },
@@ -50,8 +49,8 @@ LEVERS: dict[str, dict[str, Any]] = {
     "mix": {"mix": 0.0},
     "recombine": {"recombine": 0.0},
 }
+SYNTHETIC = "synthetic performances"
 TERMS: dict[str, dict[str, Any]] = {
-    "synthetic performances": {"synthetic_minutes": 0.0},
     "distance loss": {"distance_share": 0.0},
     "velocity loss": {"velocity_share": 0.0},
 }
@@ -73,10 +72,9 @@ def _networks(training: Sequence[Piece], held: Sequence[Piece], settings: Settin
 def _ridge(training: Sequence[Piece], settings: Settings) -> Method:
     materials = []
     for area in AREAS:
-        levers, window = settings.recipe(area).levers, settings.window
-        made = source(area, training, levers, minutes=settings.synthetic_minutes, seed=settings.seed, window=window)
+        made = material_of(area, training, settings)
         pieces = [piece.weights for piece in (whole_faces(training) if area.needs_whole_face else training)]
-        materials.append(Material(area, made, cut(pieces, length=window, overlap=0.0)))
+        materials.append(Material(area, made, cut(pieces, length=settings.window, overlap=0.0)))
     return Areas(ridge.train(materials, lambda _: None)[0], alignment=1).infer
 
 
@@ -123,6 +121,8 @@ def levers(data: Path, report: Report) -> list[Row]:
     for name, change in LEVERS.items():
         recipes = {area: replace(one, levers=replace(one.levers, **change)) for area, one in SHORT.recipes.items()}
         variants[f"without {name}"] = replace(SHORT, recipes=recipes)
+    bare = {area: replace(one, synthetic_minutes=0.0) for area, one in SHORT.recipes.items()}
+    variants[f"without {SYNTHETIC}"] = replace(SHORT, recipes=bare)
     variants |= {f"without {name}": replace(SHORT, **change) for name, change in TERMS.items()}
     rows: list[Row] = []
     for name, settings in variants.items():

@@ -68,7 +68,7 @@ class UNet(nn.Module):
 class AreaNetwork(nn.Module):
     """Autoencoder on regressor for one area: controls in mm -> weights; `full=False` stops at the regressor.
 
-    The full system takes a control no further than the faces it was trained on went (`low`, `high`), and hands weights
+    The full system takes a control no further than the recorded faces went (`low`, `high`), and hands weights
     in 0..1 to the autoencoder: what nobody's face can do is bounded before it is judged.
     """
 

@@ -12,27 +12,20 @@ from engine.evaluate.baselines import NAMES
 from engine.evaluate.baselines.parts import Material, Report, save
 from engine.models.checkpoint import MODELS, Card, commit, save_card
 from engine.regress.areas import AREAS
-from engine.regress.data import cut, source
-from engine.regress.train import Settings
+from engine.regress.data import cut
+from engine.regress.train import Settings, material_of
 
 WINDOW = 64  # the paper's; the baselines are trained as they were published
 
 
 def train(data: Path, out: Path = MODELS, report: Report = print) -> dict[str, Any]:
     """Train every baseline that ships and write it below `out`; returns their validation figures."""
-    settings = Settings()
+    settings = Settings(window=WINDOW)
     training, validation, _ = split(data)
     materials = []
     for area in AREAS:
         valid = [piece.weights for piece in (whole_faces(validation) if area.needs_whole_face else validation)]
-        material = source(
-            area,
-            training,
-            settings.recipe(area).levers,
-            minutes=settings.synthetic_minutes,
-            seed=settings.seed,
-            window=WINDOW,
-        )
+        material = material_of(area, training, settings)
         materials.append(Material(area, material, cut(valid, length=WINDOW, overlap=0.5)))
     found: dict[str, Any] = {}
     for name in NAMES:
@@ -40,10 +33,7 @@ def train(data: Path, out: Path = MODELS, report: Report = print) -> dict[str, A
         path = save(name, modules, figures, out / "baselines")
         card = Card(
             kind=name,
-            data={
-                "recordings": sorted({piece.source for piece in training}),
-                "synthetic_minutes": settings.synthetic_minutes,
-            },
+            data={"recordings": sorted({piece.source for piece in training})},
             split="train; selected on the last 15 % of each training take; test takes never seen",
             seed=settings.seed,
             commit=commit(),
