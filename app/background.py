@@ -49,19 +49,25 @@ class LatestWins(QObject):
         """Ask for a request to be worked on after the one that runs now."""
         with self._wake:
             self._waiting = request
-            self._wake.notify()
+            self._wake.notify_all()
+
+    def finish(self) -> None:
+        """Return when nothing waits and nothing runs; results are delivered later, as ever."""
+        with self._wake:
+            self._wake.wait_for(lambda: self._stopping or (self._waiting is _NOTHING and not self._working))
 
     def stop(self) -> None:
         """Finish the running job, then end the thread; returns when it has."""
         with self._wake:
             self._stopping = True
-            self._wake.notify()
+            self._wake.notify_all()
         self._thread.wait()
 
     def _run(self) -> None:
         while True:
             with self._wake:
                 self._working = False
+                self._wake.notify_all()
                 self._wake.wait_for(lambda: self._stopping or self._waiting is not _NOTHING)
                 if self._stopping:
                     break
