@@ -48,19 +48,25 @@ class LatestWins(QObject):
         """Ask for a request to be worked on; it replaces the one that waits in its channel, and no other."""
         with self._wake:
             self._waiting[channel] = request
-            self._wake.notify()
+            self._wake.notify_all()
+
+    def finish(self) -> None:
+        """Return when nothing waits and nothing runs; results are delivered later, as ever."""
+        with self._wake:
+            self._wake.wait_for(lambda: self._stopping or (not self._waiting and not self._working))
 
     def stop(self) -> None:
         """Finish the running job, then end the thread; returns when it has."""
         with self._wake:
             self._stopping = True
-            self._wake.notify()
+            self._wake.notify_all()
         self._thread.wait()
 
     def _run(self) -> None:
         while True:
             with self._wake:
                 self._working = False
+                self._wake.notify_all()
                 self._wake.wait_for(lambda: self._stopping or bool(self._waiting))
                 if self._stopping:
                     break
