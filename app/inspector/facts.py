@@ -27,7 +27,9 @@ class FactsSection(Section):
         session = self.session
         frames = len(session.take)
         if session.draft is not None:
-            return "\n".join([*self._asked(), f"moves {session.draft.stop - session.draft.start:,} of {frames:,} frames"])
+            return "\n".join(
+                [*self._asked(), f"moves {session.draft.stop - session.draft.start:,} of {frames:,} frames"]
+            )
         if not session.undo.index():
             return "Nothing changed yet. Drag a curve up or down."
         moved = int((session.take.weights != session.original.weights).any(axis=1).sum())

@@ -14,7 +14,7 @@ FIRST_CUTOFF_HZ = 6.0
 class SmoothSection(Section):
     """A cutoff that previews while it moves, and whether to keep what it does."""
 
-    tools = frozenset({"scale"})
+    tools = frozenset({"scale", "clean"})
     moved = Signal(float)  # Hz, while it moves
     kept = Signal()
     dropped = Signal()

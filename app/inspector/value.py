@@ -33,7 +33,9 @@ class ValueSection(Section):
         self.row("At the playhead", self.value)
         self.value.editingFinished.connect(self._typed)
         self.close_button = QPushButton("Close here")
-        self.close_button.setToolTip("Bring the lips, or the eyelids, together on the selection or around the playhead.")
+        self.close_button.setToolTip(
+            "Bring the lips, or the eyelids, together on the selection or around the playhead."
+        )
         self.close_button.clicked.connect(self.close_here)
         self.column.addWidget(self.close_button)
         session.changed.connect(self._on_change)
