@@ -7,7 +7,16 @@ from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import QAction, QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence, QShowEvent
+from PySide6.QtGui import (
+    QAction,
+    QActionGroup,
+    QCloseEvent,
+    QDragEnterEvent,
+    QDropEvent,
+    QKeyEvent,
+    QKeySequence,
+    QShowEvent,
+)
 from PySide6.QtWidgets import (
     QApplication,
     QFileDialog,
@@ -15,6 +24,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QMainWindow,
+    QMenu,
     QMessageBox,
     QScrollArea,
     QSplitter,
@@ -24,7 +34,7 @@ from PySide6.QtWidgets import (
 )
 
 from app import theme
-from app.actions import ACTIONS, MENUS, TOOLBAR
+from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
 from app.clean.section import CleanSection
 from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
@@ -107,11 +117,11 @@ class MainWindow(QMainWindow):
         self.actions_by_name: dict[str, QAction] = {}
         for entry in ACTIONS:
             action = QAction(entry.title, self, checkable=entry.checkable)
-            action.setShortcuts([QKeySequence(key) for key in entry.keys])
             action.triggered.connect(partial(self._do, entry.name))
             self.actions_by_name[entry.name] = action
+        self._menus: dict[str, QMenu] = {}
         for title in MENUS:
-            menu = self.menuBar().addMenu(title)
+            menu = self._menus[title] = self.menuBar().addMenu(title)
             for entry in ACTIONS:
                 if entry.menu == title:
                     menu.addAction(self.actions_by_name[entry.name])
@@ -120,6 +130,24 @@ class MainWindow(QMainWindow):
                 self._recent.aboutToShow.connect(self._fill_recent)
         self._show_tool()
         self.actions_by_name["light_theme"].setChecked(self.settings.light)
+        self._make_presets()
+
+    def _make_presets(self) -> None:
+        menu = self._menus["View"].addMenu("Shortcuts")
+        self._presets = QActionGroup(self)
+        for name in PRESETS:
+            action = self._presets.addAction(menu.addAction(name))
+            action.setCheckable(True)
+            action.setChecked(name == self.settings.preset)
+            action.triggered.connect(partial(self.use_preset, name))
+        self.use_preset(self.settings.preset)
+
+    def use_preset(self, name: str, *_: bool) -> None:
+        """Use the shortcuts of a named program."""
+        self.settings.preset = name
+        for entry in ACTIONS:
+            shortcuts = [QKeySequence(key) for key in keys_of(entry, name)]
+            self.actions_by_name[entry.name].setShortcuts(shortcuts)
 
     def _do(self, name: str, *_: bool) -> None:
         owner = next(each for each in (self, self.edits, self.time) if name in type(each).__dict__)
@@ -378,9 +406,9 @@ class MainWindow(QMainWindow):
     def show_keys(self) -> None:
         """List every key."""
         rows = "".join(
-            f"<tr><td style='padding:2px 16px 2px 0'>{entry.title}</td><td>{', '.join(entry.keys)}</td></tr>"
+            f"<tr><td style='padding:2px 16px 2px 0'>{entry.title}</td><td>{', '.join(keys)}</td></tr>"
             for entry in ACTIONS
-            if entry.keys
+            if (keys := keys_of(entry, self.settings.preset))
         )
         extra = "<tr><td>See the original</td><td>hold B</td></tr>"
         self._tell("Keys", f"<table>{rows}{extra}</table>")

@@ -2,7 +2,9 @@ from __future__ import annotations
 
 from collections import Counter
 
-from app.actions import ACTIONS, MENUS, TOOLBAR
+import pytest
+
+from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
 from app.edit_actions import EditActions
 from app.main_window import MainWindow
 from app.time_actions import TimeActions
@@ -10,8 +12,10 @@ from app.time_actions import TimeActions
 OWNERS = (MainWindow, EditActions, TimeActions)
 
 
-def test_no_shortcut_stands_twice() -> None:
-    keys = Counter(key.lower() for entry in ACTIONS for key in entry.keys)
+@pytest.mark.parametrize("preset", list(PRESETS))
+def test_no_shortcut_stands_twice(preset: str) -> None:
+    assert set(PRESETS[preset]) <= {entry.name for entry in ACTIONS}
+    keys = Counter(key.lower() for entry in ACTIONS for key in keys_of(entry, preset))
     assert [key for key, count in keys.items() if count > 1] == []
 
 
