@@ -27,6 +27,7 @@ from PySide6.QtWidgets import (
     QMenu,
     QMessageBox,
     QScrollArea,
+    QSizePolicy,
     QSplitter,
     QToolButton,
     QVBoxLayout,
@@ -178,11 +179,12 @@ class MainWindow(QMainWindow):
                 button.setAccessibleName(entry.title)
                 row.addWidget(button)
                 self.buttons[name] = button
-        row.addStretch(1)
         self.hints = QLabel(HINTS)
         self.hints.setProperty("quiet", True)
-        row.addWidget(self.hints)
-        row.addStretch(1)
+        self.hints.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        # it may be cut off where the window is narrow, but must not keep it from being so
+        self.hints.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        row.addWidget(self.hints, 1)
         return bar
 
     def _lay_out(self) -> None:
