@@ -63,7 +63,11 @@ class MovementMatcher:
         places : (f, k) mm, where the rows of the system's position term are to be
         values : (f, m), of which the pinned ones count
         """
-        right = self._system.right_side(source, places)
+        check_source(source, self._system)
+        return self.settle(self._system.right_side(source, places), values)
+
+    def settle(self, right: Array, values: Array | None = None) -> Array:
+        """Return weights, (f, m), of a right side as `System.right_side` gives it; zero where the source is at rest."""
         given = np.zeros_like(right) if values is None else np.where(self._held, values, 0.0)
         weights = self._unbounded(right, given)
         if self._bounds is None:

@@ -10,8 +10,8 @@ from engine.errors import EditError
 from engine.spacetime.prior import Prior
 from engine.take import Array
 
-# What a shape that moves no marker pays for its own velocity, relative to the strongest shape: it then follows its pins.
-UNSEEN = 1e-8
+# So small that it only decides what the markers leave open: a shape that moves none of them follows its pins.
+UNSEEN = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,7 @@ class Position:
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """``|C D (W B' - S)|^2 + unseen |D W|^2 + alpha prior(W) + |beta^(1/2) (W P' - T)|^2`` over W, (f, m).
+    """``|C D (W B' - S)|^2 + stiffness |D W|^2 + alpha prior(W) + |beta^(1/2) (W P' - T)|^2`` over W, (f, m).
 
     D is the difference of neighbouring frames, B the basis, P the rows of `position`, S and T what the source does.
 
@@ -41,7 +41,8 @@ class System:
     prior : of one frame, or None
     alpha : its strength, already in the unit of the match
     position : what is held in place, or None
-    seen : (f, 3n) in 0..1, how far each coordinate is to be believed in each frame, or None where all are
+    believed : (f - 1, 3n) in 0..1, how far each coordinate's step to the next frame is to be believed; None for fully
+    stiffness : what a shape pays for its own velocity, relative to what the average shape pays for its markers'
     """
 
     basis: Array
@@ -49,7 +50,8 @@ class System:
     prior: Prior | None = None
     alpha: float = 0.0
     position: Position | None = None
-    seen: Array | None = None
+    believed: Array | None = None
+    stiffness: float = UNSEEN
 
     def __post_init__(self) -> None:
         if not np.isfinite(self.basis).all():
@@ -63,16 +65,16 @@ class System:
     @property
     def uniform(self) -> bool:
         """Return whether every frame has the same terms, so that time and shapes separate."""
-        return self.seen is None and (self.position is None or self.position.weights.ndim == 1)
+        return self.believed is None and (self.position is None or self.position.weights.ndim == 1)
 
     def velocity_gram(self) -> Array:
         """Return (m, m), what a unit step in time of the weights costs where all markers are seen."""
         gram = self.basis.T @ self.basis
-        return np.asarray(gram + self._unseen * np.eye(self.count))
+        return np.asarray(gram + self._own * np.eye(self.count))
 
     @property
-    def _unseen(self) -> float:
-        return UNSEEN * max(float((self.basis**2).sum(axis=0).max(initial=0.0)), 1e-12)
+    def _own(self) -> float:
+        return self.stiffness * max(float((self.basis**2).sum()) / max(self.count, 1), 1e-12)
 
     def constant_gram(self) -> Array:
         """Return (m, m), what each frame pays for its weights whatever the frame: prior, and held places if uniform."""
@@ -83,17 +85,12 @@ class System:
             gram += self.position.rows.T @ (self.position.weights[:, None] * self.position.rows)
         return gram
 
-    def steps_seen(self, start: int, stop: int) -> Array | None:
-        """Return (stop - start, 3n), how far the steps t -> t + 1, start <= t < stop, are believed: both ends count."""
-        return None if self.seen is None else np.asarray(self.seen[start:stop] * self.seen[start + 1 : stop + 1])
-
     def right_side(self, source: Array, held_in_place: Array | None = None) -> Array:
         """Return (f, m), minus the gradient at W = 0, of source displacements, (f, 3n) mm, and places, (f, k) mm."""
-        seen = self.steps_seen(0, self.frames - 1)
-        if seen is None:
+        if self.believed is None:
             moved = np.diff(source @ self.basis, axis=0)
         else:
-            moved = (np.diff(source, axis=0) * seen) @ self.basis
+            moved = (np.diff(source, axis=0) * self.believed) @ self.basis
         right = np.zeros((self.frames, self.count))
         right[1:] += moved
         right[:-1] -= moved
@@ -107,10 +104,9 @@ class System:
         """Return half the Hessian times weights, (f, m): `right_side` of the motion that the weights make."""
         applied = weights @ self.constant_gram()
         steps = np.diff(weights, axis=0)
-        seen = self.steps_seen(0, self.frames - 1)
         moved = steps @ self.velocity_gram()
-        if seen is not None:
-            moved = ((steps @ self.basis.T) * seen) @ self.basis + self._unseen * steps
+        if self.believed is not None:
+            moved = ((steps @ self.basis.T) * self.believed) @ self.basis + self._own * steps
         applied[1:] += moved
         applied[:-1] -= moved
         if self.position is not None and self.position.weights.ndim == 2:
@@ -136,10 +132,9 @@ class System:
 
     def _step_grams(self, first: int, last: int) -> Array:
         """Return (last - first, m, m), what each step t -> t + 1, first <= t < last, costs."""
-        seen = self.steps_seen(first, last)
-        if seen is None:
+        if self.believed is None:
             return np.broadcast_to(self.velocity_gram(), (last - first, self.count, self.count))
-        return _weighted_grams(self.basis, seen) + self._unseen * np.eye(self.count)
+        return _weighted_grams(self.basis, self.believed[first:last]) + self._own * np.eye(self.count)
 
 
 def _weighted_grams(rows: Array, weights: Array) -> Array:

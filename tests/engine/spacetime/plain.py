@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sparse
 from scipy.sparse.linalg import splu
 
-from engine.spacetime.system import UNSEEN, System
+from engine.spacetime.system import System
 from engine.take import Array, Mask
 
 
@@ -15,12 +15,12 @@ def stacked(system: System, source: Array, places: Array | None) -> tuple[sparse
     frames, count = system.frames, system.count
     difference = sparse.diags_array([-np.ones(frames), np.ones(frames)], offsets=[0, 1], shape=(frames - 1, frames))
     every = sparse.eye_array(frames)
-    seen = np.ones_like(source) if system.seen is None else system.seen
-    believed = np.sqrt(seen[:-1] * seen[1:]).ravel()
-    unseen = np.sqrt(UNSEEN * (system.basis**2).sum(axis=0).max())
+    believed = np.ones_like(source[1:]) if system.believed is None else np.sqrt(system.believed)
+    believed = believed.ravel()
+    own = np.sqrt(system.stiffness * (system.basis**2).sum(axis=0).mean())
     rows = [
         sparse.diags_array(believed) @ sparse.kron(difference, system.basis),
-        unseen * sparse.kron(difference, sparse.eye_array(count)),
+        own * sparse.kron(difference, sparse.eye_array(count)),
     ]
     sides = [believed * np.diff(source, axis=0).ravel(), np.zeros((frames - 1) * count)]
     if system.prior is not None:

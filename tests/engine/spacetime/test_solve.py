@@ -97,8 +97,8 @@ def test_fast_path_with_held_places() -> None:
 def test_block_path_equals_the_assembled_system(shapes: int, pinned: list[int]) -> None:
     frames, basis = 20, _basis(shapes)
     position, places = _positions(frames, shapes, by_frame=True)
-    seen = (np.random.default_rng(5).random((frames, 20)) > 0.1).astype(float).repeat(3, axis=1)
-    system = System(basis, frames, from_shapes(basis), 0.01, position, seen)
+    believed = (np.random.default_rng(5).random((frames - 1, 20)) > 0.1).astype(float).repeat(3, axis=1)
+    system = System(basis, frames, from_shapes(basis), 0.01, position, believed)
     held, values = _held(frames, shapes, pinned)
     held[12, ::3] = held[4, 1] = True  # single weights
     matcher = MovementMatcher(system, held)
@@ -148,7 +148,7 @@ def test_a_motion_of_the_shapes_comes_back() -> None:
     np.testing.assert_allclose(found, weights, atol=1e-5)
 
 
-@pytest.mark.parametrize("seen", [None, np.ones((10, 60))], ids=["modes", "blocks"])
-def test_a_motion_that_starts_nowhere_is_refused(seen: Array | None) -> None:
+@pytest.mark.parametrize("believed", [None, np.ones((9, 60))], ids=["modes", "blocks"])
+def test_a_motion_that_starts_nowhere_is_refused(believed: Array | None) -> None:
     with pytest.raises(EditError, match="starts"):
-        MovementMatcher(System(_basis(18), 10, seen=seen))
+        MovementMatcher(System(_basis(18), 10, believed=believed))
