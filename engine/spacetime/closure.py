@@ -53,7 +53,12 @@ class Gaps:
 
     def closedness(self, weights: Array) -> Array:
         """Return how far each gap counts as closed, (frames, g) in 0..1, of weights, (frames, 52)."""
-        closed = np.array([gap.closed_mm for gap in self.gaps])
-        opened = np.array([gap.open_mm for gap in self.gaps])
-        share = np.clip((opened - self.sizes(weights)) / (opened - closed), 0.0, 1.0)
-        return np.asarray(share * share * (3 - 2 * share))
+        return closedness(self.sizes(weights), self.gaps)
+
+
+def closedness(sizes: Array, gaps: tuple[Gap, ...] = GAPS) -> Array:
+    """Return how far gaps of given sizes, (frames, g) mm, count as closed, (frames, g) in 0..1; an unknown one is open."""
+    closed = np.array([gap.closed_mm for gap in gaps])
+    opened = np.array([gap.open_mm for gap in gaps])
+    share = np.clip((opened - np.where(np.isfinite(sizes), sizes, np.inf)) / (opened - closed), 0.0, 1.0)
+    return np.asarray(share * share * (3 - 2 * share))

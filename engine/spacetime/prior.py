@@ -42,20 +42,22 @@ def from_poses(basis: Array, poses: Array, *, about_rest: bool = True) -> Prior:
     """Return the prior of a basis, (3n, m) mm, from example weights, (poses, m), by PCA of what they do to markers.
 
     About the face at rest, or about the mean of the examples as in the paper; the mean of all shapes is a grimace
-    that a face at rest would be drawn towards. Raises `EditError` where the examples move nothing.
+    that a face at rest would be drawn towards. Shapes that cancel, such as a jaw to the left and to the right, move no
+    marker; they are kept as small as the examples' weights. Raises `EditError` where the examples move nothing.
     """
-    examples = poses @ basis.T
-    mean = np.zeros(len(basis)) if about_rest else examples.mean(axis=0)
-    _, sizes, directions = np.linalg.svd(basis, full_matrices=False)
-    known = sizes > 1e-9 * max(float(sizes[0]), 1e-300)
-    to_weights = sizes[known, None] * directions[known]  # (r, m): orthogonal coordinates of the marker space
-    span = basis @ np.linalg.pinv(to_weights)  # (3n, r), orthonormal
-    coordinates = (examples - mean) @ span
+    mean = np.zeros(basis.shape[1]) if about_rest else poses.mean(axis=0)
+    _, sizes, directions = np.linalg.svd(basis)
+    known = np.zeros(len(directions), bool)
+    known[: len(sizes)] = sizes > 1e-9 * max(float(sizes[0]), 1e-300)
+    to_markers = sizes[known[: len(sizes)], None] * directions[known]  # (r, m): orthogonal coordinates of marker space
+    coordinates = (poses - mean) @ to_markers.T
     values, vectors = np.linalg.eigh(coordinates.T @ coordinates / len(poses))
     if not len(values) or values[-1] <= 0:
         raise EditError("The prior's examples move no marker.", "Give it takes or shapes that move the face.")
     whitening = vectors / np.sqrt(np.maximum(values, FLOOR * values[-1]))
-    return Prior(np.asarray(whitening.T @ to_weights), np.asarray(mean @ span @ whitening))
+    cancelling = directions[~known] / np.sqrt((poses**2).mean())
+    factor = np.vstack([whitening.T @ to_markers, cancelling])
+    return Prior(factor, factor @ mean)
 
 
 def from_shapes(basis: Array, *, about_rest: bool = True) -> Prior:
