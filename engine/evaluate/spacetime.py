@@ -16,17 +16,17 @@ from engine.evaluate.spacetime_baselines import RANGE, per_frame, per_frame_boun
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import Layout, standard
 from engine.spacetime.retarget import Correspondence, Matching, correspond, match
-from engine.spacetime.solve import Bounds
-from engine.spacetime.source import Source, from_take, shown
+from engine.spacetime.source import Source, from_take, shown, still_of_noise
 from engine.take import MODEL_FPS, Array, Take
 
-PRIOR_ALPHA = 0.02  # of the per-frame prior, chosen on training takes as our own settings were
+PRIOR_ALPHA = 0.1  # of the per-frame prior, chosen on training takes as our own settings were
 CLOSED_MM = 3.0
 METHODS: dict[str, Callable[[Correspondence], Array]] = {
     "movement_matching": lambda pair: match(pair, MODEL_FPS, Matching()),
-    "movement_matching_0_1": lambda pair: match(pair, MODEL_FPS, replace(Matching(), bounds=Bounds())),
+    "movement_matching_free": lambda pair: match(pair, MODEL_FPS, replace(Matching(), bounds=None)),
     "per_frame": per_frame,
-    "per_frame_bounded": per_frame_bounded,
+    "per_frame_bounded": lambda pair: per_frame_bounded(pair, 0.0, 1.0),
+    "per_frame_bounded_paper": lambda pair: per_frame_bounded(pair, *RANGE),
     "per_frame_prior": lambda pair: per_frame_prior(pair, PRIOR_ALPHA),
 }
 STRETCH = np.array([1.0, 1.3, 1.0])  # the proportion change: a face 1.3 times as long
@@ -132,7 +132,9 @@ def _round_trip(
     ours, other = _heads()
     truth = shown(piece.weights)
     played = from_take(Take(truth, MODEL_FPS), ours.character, ours.layout)
-    there, used = _carry(CONDITIONS[condition](played, rng), other, method)
+    captured = CONDITIONS[condition](played, rng)
+    captured = replace(captured, displacements=still_of_noise(captured.displacements))  # as any capture, for all methods
+    there, used = _carry(captured, other, method)
     undisturbed = _stretched(played, rng) if condition.startswith("proportion") else played
     in_source = used.basis @ there[:, used.shapes].T
     markers_there = in_source.T.reshape(played.displacements.shape)

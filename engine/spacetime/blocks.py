@@ -12,7 +12,7 @@ from engine.take import Array, Mask
 
 Blocks = Callable[[int, int], tuple[Array, Array]]
 CHUNK = 256  # frames whose blocks are in memory at a time
-KEPT = 2048  # frames up to which the factor is kept; a longer one is computed again on the way back
+KEPT = 4096  # frames up to which the factor is kept; a longer one is computed again on the way back
 
 
 class BlockCholesky:

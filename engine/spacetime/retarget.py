@@ -15,7 +15,8 @@ from engine.spacetime.align import Warp
 from engine.spacetime.closure import GAPS, Gaps, closedness
 from engine.spacetime.layout import Layout, standard
 from engine.spacetime.prior import Prior
-from engine.spacetime.solve import Bounds, MovementMatcher
+from engine.spacetime.bounded import Bounds
+from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.source import Source, bridge
 from engine.spacetime.system import Position, System
 from engine.take import SHAPES, Array, Take
@@ -33,13 +34,13 @@ class Matching:
     beta : how much the markers' places count beside their velocities, at 30 fps (section 7.1); velocities alone would
         let a long-held pose sink back to rest
     closure : how much lips and lids that meet in the source are to meet in the target
-    bounds : range of the weights, or None
+    bounds : range of the weights, which most programs cut off beyond 0..1; None for the paper's free weights
     """
 
-    alpha: float = 0.003
+    alpha: float = 0.01
     beta: float = 0.1
     closure: float = 30.0
-    bounds: Bounds | None = None
+    bounds: Bounds | None = Bounds()
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from engine.errors import EditError
-from engine.spacetime.blocks import BlockCholesky
+from engine.spacetime.blocks import KEPT, BlockCholesky
+from engine.spacetime.bounded import BoundedSolver, Bounds
 from engine.spacetime.modes import Modes
 from engine.spacetime.system import System
 from engine.take import Array, Mask
-
-ROUNDS = 100  # of the bounded solve; each fixes and frees many weights at once, ten is typical
-TOLERANCE = 1e-10  # of a weight: how far the gradient may still ask to go
-SUFFICIENT = 1e-4  # share of the promised decrease that a step must deliver
-
-
-@dataclass(frozen=True)
-class Bounds:
-    """The range that weights must stay in; pins may lie outside."""
-
-    low: float = 0.0
-    high: float = 1.0
 
 
 class MovementMatcher:
@@ -45,6 +32,7 @@ class MovementMatcher:
 
     def __init__(self, system: System, held: Mask | None = None, *, bounds: Bounds | None = None) -> None:
         self._system, self._bounds = system, bounds
+        self._remembered: dict[int, tuple[Array, Array]] = {}
         self._held = np.zeros((system.frames, system.count), bool) if held is None else held
         whole = self._held.all(axis=1)
         self.separable = system.uniform and bool((self._held.any(axis=1) == whole).all())
@@ -52,7 +40,15 @@ class MovementMatcher:
         self._cholesky = None if self.separable else self._factorise(~self._held)
 
     def _factorise(self, free: Mask) -> BlockCholesky:
-        return BlockCholesky(self._system.blocks, self._system.frames, None if free.all() else free)
+        return BlockCholesky(self._blocks, self._system.frames, None if free.all() else free)
+
+    def _blocks(self, start: int, stop: int) -> tuple[Array, Array]:
+        """Return the system's blocks, kept for the bounded solve of a take that is not long."""
+        if self._bounds is None or self._system.frames > KEPT:
+            return self._system.blocks(start, stop)
+        if start not in self._remembered:
+            self._remembered[start] = self._system.blocks(start, stop)
+        return self._remembered[start]
 
     def solve(self, source: Array, *, places: Array | None = None, values: Array | None = None) -> Array:
         """Return weights, (f, m).
@@ -72,7 +68,7 @@ class MovementMatcher:
         weights = self._unbounded(right, given)
         if self._bounds is None:
             return weights
-        return self._within(weights, right, self._bounds)
+        return BoundedSolver(self._system, self._held, self._bounds, self._factorise).solve(weights, right)
 
     def _unbounded(self, right: Array, given: Array) -> Array:
         if self._modes is not None:
@@ -81,43 +77,6 @@ class MovementMatcher:
         if not self._held.any():
             return self._cholesky.solve(right)
         return self._cholesky.solve(np.where(self._held, given, right - self._system.apply(given)))
-
-    def _within(self, start: Array, right: Array, bounds: Bounds) -> Array:
-        """Return the minimiser within bounds by projected Newton steps (Bertsekas 1982) from the unbounded one.
-
-        Weights at a bound that the gradient presses against it are left out of the step; the step is cut until the
-        projected weights lower the cost enough, which makes the method finite.
-        """
-        scale = np.maximum(self._diagonal(), 1e-300)
-        weights = np.where(self._held, start, np.clip(start, bounds.low, bounds.high))
-        for _ in range(ROUNDS):
-            slope = np.where(self._held, 0.0, self._system.apply(weights) - right)
-            pressed = np.where(slope > 0, weights <= bounds.low, weights >= bounds.high)
-            wanted = np.where(self._held, 0.0, np.clip(weights - slope / scale, bounds.low, bounds.high) - weights)
-            if np.abs(wanted).max(initial=0.0) < TOLERANCE:
-                return weights
-            free = ~self._held & ~pressed
-            step = self._factorise(free).solve(np.where(free, -slope, 0.0))
-            weights = self._search(weights, step, slope, bounds)
-        return weights
-
-    def _search(self, weights: Array, step: Array, slope: Array, bounds: Bounds) -> Array:
-        length = 1.0
-        while True:
-            moved = np.where(self._held, weights, np.clip(weights + length * step, bounds.low, bounds.high))
-            change = moved - weights
-            promised = float((slope * change).sum())
-            gained = promised + 0.5 * float((change * self._system.apply(change)).sum())
-            if gained <= SUFFICIENT * promised or length < 1e-12:
-                return moved
-            length *= 0.5
-
-    def _diagonal(self) -> Array:
-        """Return what each weight costs by itself, (f, m), to judge its gradient in its own unit."""
-        ends = 2 * np.ones(self._system.frames)
-        ends[[0, -1]] = 1
-        own = np.diag(self._system.velocity_gram()), np.diag(self._system.constant_gram())
-        return np.asarray(ends[:, None] * own[0] + own[1])
 
 
 def check_source(source: Array, system: System) -> None:

@@ -11,6 +11,7 @@ from engine.errors import EditError
 from engine.formats.markers import Markers
 from engine.spacetime.align import HeadMotion, check_points, stillest
 from engine.spacetime.closure import GAPS, Gaps
+from engine.spacetime.denoise import denoise
 from engine.spacetime.layout import Layout, standard
 from engine.take import SHAPE_INDEX, Array, Take, runs
 
@@ -99,8 +100,14 @@ def from_markers(markers: Markers, *, neutral_frame: int = 0) -> Source:
         name=markers.name,
         notices=markers.notices,
     )
-    filled = bridge(still - neutral)[0]
-    return Source(still - neutral, neutral, markers.names, _gaps(filled + neutral, neutral, markers), take, head)
+    moved = still_of_noise(still - neutral)
+    sizes = _gaps(bridge(moved)[0] + neutral, neutral, markers)
+    return Source(moved, neutral, markers.names, sizes, take, head)
+
+
+def still_of_noise(displacements: Array) -> Array:
+    """Return displacements, (frames, n, 3) mm, without a tracker's jitter; gaps stay gaps."""
+    return np.where(np.isfinite(displacements), denoise(bridge(displacements)[0]), np.nan)
 
 
 def _gaps(positions: Array, neutral: Array, markers: Markers) -> Array:

@@ -9,7 +9,8 @@ from scipy.optimize import lsq_linear
 
 from engine.errors import EditError
 from engine.spacetime.prior import from_shapes
-from engine.spacetime.solve import Bounds, MovementMatcher
+from engine.spacetime.bounded import Bounds
+from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.system import Position, System
 from engine.take import Array, Mask
 
@@ -122,8 +123,10 @@ def test_block_path_at_any_length(frames: int, monkeypatch: pytest.MonkeyPatch) 
     np.testing.assert_array_equal(again, found)
 
 
+@pytest.mark.parametrize("rounds", [80, 1], ids=["exchange", "newton"])
 @pytest.mark.parametrize("pinned", [[], [0], [4, 5]])
-def test_bounds_equal_bounded_least_squares(pinned: list[int]) -> None:
+def test_bounds_equal_bounded_least_squares(pinned: list[int], rounds: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("engine.spacetime.bounded.ROUNDS", rounds)
     frames, basis = 9, _basis(6, markers=5)
     system = System(basis, frames, from_shapes(basis), 0.05)
     held, values = _held(frames, 6, pinned)
