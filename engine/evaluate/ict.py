@@ -78,10 +78,12 @@ def _triangles(faces: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
 def layout(head: Character, bundled: Character) -> Layout:
     """Return the 54 markers on the head: landmarks where they are, the others nearest to where the warp puts ours."""
     shared = [name for name in LANDMARKS if not name.startswith("lip_inner_lower")]  # those lie on the upper ones
-    ends = (face.neutral[[face.landmarks[name] for name in shared]].astype(float) for face in (bundled, head))
+    ours, theirs = (
+        face.neutral[[face.landmarks[name] for name in shared]].astype(np.float64) for face in (bundled, head)
+    )
     placed = standard(bundled)
-    wanted = Warp(*ends, shared)(placed.rest(bundled))
-    _, vertices = cKDTree(head.neutral[:FACE_VERTICES]).query(wanted)
-    for index, name in enumerate(placed.names):
-        vertices[index] = head.landmarks.get(name, vertices[index])
+    wanted = Warp(ours, theirs, shared)(placed.rest(bundled))
+    _, nearest = cKDTree(head.neutral[:FACE_VERTICES]).query(wanted)
+    found = zip(placed.names, np.atleast_1d(nearest).tolist(), strict=True)
+    vertices = np.array([head.landmarks.get(name, vertex) for name, vertex in found], np.int64)
     return Layout(placed.names, vertices)

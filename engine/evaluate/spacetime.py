@@ -17,9 +17,9 @@ from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import Layout, standard
 from engine.spacetime.retarget import Correspondence, Matching, correspond, match
 from engine.spacetime.source import Source, from_take, shown, still_of_noise
-from engine.take import MODEL_FPS, Array, Take
+from engine.take import MODEL_FPS, Array, Mask, Take
 
-PRIOR_ALPHA = 0.1  # of the per-frame prior, chosen on training takes as our own settings were
+PRIOR_ALPHA = 0.3  # of the per-frame prior, chosen on training takes as our own settings were
 CLOSED_MM = 3.0
 METHODS: dict[str, Callable[[Correspondence], Array]] = {
     "movement_matching": lambda pair: match(pair, MODEL_FPS, Matching()),
@@ -49,7 +49,7 @@ def _gappy(source: Source, rng: np.random.Generator) -> Source:
     """Hide runs of frames, ten on average, of single markers, a tenth of everything."""
     frames, markers = source.displacements.shape[:2]
     hidden = np.zeros((frames, markers), bool)
-    state = rng.random(markers) < GAP_SHARE
+    state: Mask = np.asarray(rng.random(markers) < GAP_SHARE)
     leave, enter = 1 / GAP_FRAMES, GAP_SHARE / (1 - GAP_SHARE) / GAP_FRAMES
     for frame in range(frames):
         state = np.where(state, rng.random(markers) >= leave, rng.random(markers) < enter)
@@ -104,9 +104,9 @@ def table(data: Path | None, report: Report) -> list[Row]:
     takes = pieces(data)
     rows: list[Row] = []
     for condition in CONDITIONS:
-        for method in METHODS:
-            report(f"{condition}: {method}")
-            rows.append({"method": method, "condition": condition, **measure(takes, METHODS[method], condition)})
+        for name, method in METHODS.items():
+            report(f"{condition}: {name}")
+            rows.append({"method": name, "condition": condition, **measure(takes, method, condition)})
     return rows
 
 
@@ -133,7 +133,9 @@ def _round_trip(
     truth = shown(piece.weights)
     played = from_take(Take(truth, MODEL_FPS), ours.character, ours.layout)
     captured = CONDITIONS[condition](played, rng)
-    captured = replace(captured, displacements=still_of_noise(captured.displacements))  # as any capture, for all methods
+    captured = replace(
+        captured, displacements=still_of_noise(captured.displacements)
+    )  # as any capture, for all methods
     there, used = _carry(captured, other, method)
     undisturbed = _stretched(played, rng) if condition.startswith("proportion") else played
     in_source = used.basis @ there[:, used.shapes].T

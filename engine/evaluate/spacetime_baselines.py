@@ -40,7 +40,7 @@ def per_frame_bounded(pair: Correspondence, low: float = RANGE[0], high: float =
     for each frame by halving until the cost falls.
     """
     gram, right = _normal(pair)
-    weights = np.clip(np.linalg.solve(gram, right.T).T, low, high)
+    weights: Array = np.clip(np.linalg.solve(gram, right.T).T, low, high)
     active = np.arange(len(weights))
     for _ in range(ROUNDS):
         here, side = weights[active], right[active]
@@ -55,11 +55,11 @@ def per_frame_bounded(pair: Correspondence, low: float = RANGE[0], high: float =
         shapes = np.arange(gram.shape[0])
         masked[:, shapes, shapes] += ~free
         step = np.linalg.solve(masked, np.where(free, -slope, 0.0)[..., None])[..., 0]
-        weights[active] = _search(here, step, slope, gram, low, high)
+        weights[active] = _search(here, step, slope=slope, gram=gram, low=low, high=high)
     return weights
 
 
-def _search(here: Array, step: Array, slope: Array, gram: Array, low: float, high: float) -> Array:
+def _search(here: Array, step: Array, *, slope: Array, gram: Array, low: float, high: float) -> Array:
     length = np.ones((len(here), 1))
     for _ in range(30):
         moved = np.clip(here + length * step, low, high)

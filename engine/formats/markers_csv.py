@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from math import isnan
 from pathlib import Path
 
 import numpy as np
@@ -87,5 +88,5 @@ def _encode(markers: Markers) -> Iterator[bytes]:
     cells = [f"{name}_{axis} (mm)" for name in markers.names for axis in "xyz"]
     yield (",".join(["time", *cells]) + "\n").encode()
     for frame, row in enumerate(markers.positions.reshape(len(markers), -1).tolist()):
-        values = ",".join("" if value != value else f"{value:.6f}" for value in row)  # noqa: PLR0124: NaN is a gap
+        values = ",".join("" if isnan(value) else f"{value:.6f}" for value in row)
         yield f"{frame / markers.fps:.9f},{values}\n".encode()

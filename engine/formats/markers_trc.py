@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isnan
 from pathlib import Path
 
 import numpy as np
@@ -59,7 +60,16 @@ def write(markers: Markers, path: Path) -> None:
 
 def _encode(markers: Markers, file_name: str) -> Iterator[bytes]:
     frames, count = markers.positions.shape[:2]
-    keys = "DataRate CameraRate NumFrames NumMarkers Units OrigDataRate OrigDataStartFrame OrigNumFrames".split()
+    keys = [
+        "DataRate",
+        "CameraRate",
+        "NumFrames",
+        "NumMarkers",
+        "Units",
+        "OrigDataRate",
+        "OrigDataStartFrame",
+        "OrigNumFrames",
+    ]
     values = [markers.fps, markers.fps, frames, count, "mm", markers.fps, 1, frames]
     axes = [f"{axis}{marker}" for marker in range(1, count + 1) for axis in "XYZ"]
     head = [
@@ -71,5 +81,5 @@ def _encode(markers: Markers, file_name: str) -> Iterator[bytes]:
     ]
     yield ("\n".join(head) + "\n").encode()
     for frame, row in enumerate(markers.positions.reshape(frames, -1).tolist()):
-        cells = "\t".join("" if value != value else f"{value:.6f}" for value in row)  # noqa: PLR0124: NaN is a gap
+        cells = "\t".join("" if isnan(value) else f"{value:.6f}" for value in row)
         yield f"{frame + 1}\t{frame / markers.fps:.9f}\t{cells}\n".encode()

@@ -57,7 +57,7 @@ def procrustes(positions: Array, neutral: Array, weights: Array | None = None) -
     ------
     EditError : naming the frame, where fewer than three markers that are not on one line are seen
     """
-    seen = np.isfinite(positions).all(axis=2)
+    seen: Mask = np.asarray(np.isfinite(positions).all(axis=2))
     share = seen * (np.ones(len(neutral)) if weights is None else weights)
     total = share.sum(axis=1, keepdims=True)
     known = np.where(seen[..., None], positions, 0.0)
@@ -135,7 +135,8 @@ class Warp:
 
 def check_points(points: Array, names: Sequence[str]) -> None:
     """Raise `EditError`, with names, where points, (n, 3), are missing, too few, duplicate, on a line or in a plane."""
-    missing = [name for name, found in zip(names, np.isfinite(points).all(axis=1), strict=True) if not found]
+    found: Mask = np.asarray(np.isfinite(points).all(axis=1))
+    missing = [name for name, known in zip(names, found, strict=True) if not known]
     if missing:
         raise EditError(f"{_listed(missing)} missing in the neutral frame.", "Choose a neutral frame that has them.")
     if len(points) < 4:
@@ -143,7 +144,7 @@ def check_points(points: Array, names: Sequence[str]) -> None:
     extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     gaps = squareform(pdist(points))
     np.fill_diagonal(gaps, np.inf)
-    first, second = np.unravel_index(int(gaps.argmin()), gaps.shape)
+    first, second = divmod(int(gaps.argmin()), len(points))
     if gaps[first, second] <= SAME * max(float(extents[0]), 1e-300):
         raise EditError(
             f"The markers {names[first]} and {names[second]} are at the same place.", "Remove one of the two."
@@ -151,7 +152,8 @@ def check_points(points: Array, names: Sequence[str]) -> None:
     for dimension, shape in ((1, "on one line"), (2, "in one plane")):
         if extents[dimension] <= FLAT * extents[0]:
             raise EditError(
-                f"All markers ({_few(names)}) lie {shape}.", "Add markers at other depths, such as the nose or the ears."
+                f"All markers ({_few(names)}) lie {shape}.",
+                "Add markers at other depths, such as the nose or the ears.",
             )
 
 

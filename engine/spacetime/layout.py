@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -109,6 +109,11 @@ class Layout:
         if missing:
             raise EditError(f"The layout has no marker {missing[0]!r}.", f"It has: {', '.join(self.names)}.")
         return Layout(tuple(names), self.vertices[[index[name] for name in names]])
+
+
+def named(vertices: Mapping[str, int]) -> Layout:
+    """Return the layout that a landmark file gives, vertex by marker name."""
+    return Layout(tuple(vertices), np.array(list(vertices.values()), np.int64))
 
 
 def standard(character: Character) -> Layout:

@@ -41,9 +41,10 @@ class Spreading:
 class Spread:
     """Spreads changes of some frames over a motion, keeping its velocities and its closures.
 
-    Minimises ``|D (W - W0) B'|^2 + stiffness |D (W - W0)|^2 + alpha prior(W - W0) + closure c |gaps(W - W0)|^2`` with the held weights given: SLS12
-    equation 4 and section 7.1 with the take W0 itself as the source, so that no pin is no change. c tells how far each
-    gap of W0 is closed. Around a pin that stands where a gap is closed, the pin decides: that closing is let go.
+    With X = W - W0 it minimises ``|D X B'|^2 + stiffness |D X|^2 + alpha prior(X) + closure c |gaps(X)|^2``, the held
+    weights given: SLS12 equation 4 and section 7.1 with the take W0 itself as the source, so that no pin is no change.
+    c tells how far each gap of W0 is closed. Around a pin that stands where a gap is closed, the pin decides: that
+    closing is let go.
     Factorises here; a call only substitutes.
 
     Parameters
@@ -188,7 +189,8 @@ def pose_reaching(take: Take, frame: int, controls: Mapping[str, float]) -> Arra
     if not np.isfinite(asked).all():
         raise EditError("A control is pinned to something that is not a finite number.")
     here = take.weights[frame : frame + 1]
-    return exact.project(here, asked, columns, bundled_measurer(), free=np.ones(len(SHAPES), bool))[0]
+    every = np.ones(len(SHAPES), bool)
+    return np.asarray(exact.project(here, asked, columns, bundled_measurer(), free=every)[0])
 
 
 def _check(take: Take, pins: Mapping[int, Pose], frames: tuple[int, int]) -> None:

@@ -46,10 +46,10 @@ def from_poses(basis: Array, poses: Array, *, about_rest: bool = True) -> Prior:
     marker; they are kept as small as the examples' weights. Raises `EditError` where the examples move nothing.
     """
     mean = np.zeros(basis.shape[1]) if about_rest else poses.mean(axis=0)
-    _, sizes, directions = np.linalg.svd(basis)
-    known = np.zeros(len(directions), bool)
-    known[: len(sizes)] = sizes > 1e-9 * max(float(sizes[0]), 1e-300)
-    to_markers = sizes[known[: len(sizes)], None] * directions[known]  # (r, m): orthogonal coordinates of marker space
+    squares, vectors = np.linalg.eigh(basis.T @ basis)
+    known = squares > 1e-12 * max(float(squares[-1]), 1e-300)
+    directions = vectors.T
+    to_markers = np.sqrt(squares[known, None]) * directions[known]  # (r, m): orthogonal coordinates of marker space
     coordinates = (poses - mean) @ to_markers.T
     values, vectors = np.linalg.eigh(coordinates.T @ coordinates / len(poses))
     if not len(values) or values[-1] <= 0:

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from engine.character import Character
 from engine.errors import EditError
-from engine.models.resample import MODEL_FPS
 from engine.spacetime import prior as priors
 from engine.spacetime.align import Warp
+from engine.spacetime.bounded import Bounds
 from engine.spacetime.closure import GAPS, Gaps, closedness
 from engine.spacetime.layout import Layout, standard
 from engine.spacetime.prior import Prior
-from engine.spacetime.bounded import Bounds
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.source import Source, bridge
 from engine.spacetime.system import Position, System
-from engine.take import SHAPES, Array, Take
+from engine.take import MODEL_FPS, SHAPES, Array, Take
 
+TIGHTER = 0.8  # of the source's gap: what nearly closes errs on the closed side
 UNSEEN_MM = 0.3  # a shape that moves every marker less than this is not told by markers
 
 
@@ -37,10 +37,10 @@ class Matching:
     bounds : range of the weights, which most programs cut off beyond 0..1; None for the paper's free weights
     """
 
-    alpha: float = 0.01
+    alpha: float = 0.005
     beta: float = 0.1
     closure: float = 30.0
-    bounds: Bounds | None = Bounds()
+    bounds: Bounds | None = field(default_factory=Bounds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ class Correspondence:
     motion : (frames, 3n) mm, gaps bridged
     believed : (frames - 1, 3n), or None where no marker is ever missing
     gap_rows : (3g, m) mm per unit of weight, in the target's own proportions
-    gap_places : (frames, 3g) mm, what the gaps have to change from rest to be as wide as the source's
+    gap_places : (frames, 3g) mm, what the gaps have to change from rest to be a little narrower than the source's
     closedness : (frames, g) in 0..1, of the source
     """
 
@@ -104,9 +104,9 @@ def correspond(source: Source, character: Character, layout: Layout | None = Non
 
 
 def _gap_places(gaps: Gaps, sizes: Array) -> Array:
-    """Return the change of gap vectors, (frames, 3g) mm, that makes them as wide as given, (frames, g) mm."""
+    """Return the change of gap vectors, (frames, 3g) mm, that makes them a little narrower than given, (frames, g) mm."""
     towards = gaps.rest / np.maximum(np.linalg.norm(gaps.rest, axis=1, keepdims=True), 1e-9)
-    wanted = np.where(np.isfinite(sizes), sizes, 0.0)[..., None] * towards
+    wanted = TIGHTER * np.where(np.isfinite(sizes), sizes, 0.0)[..., None] * towards
     return np.asarray((wanted - gaps.rest).reshape(len(sizes), -1))
 
 

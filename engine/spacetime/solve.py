@@ -34,7 +34,7 @@ class MovementMatcher:
         self._system, self._bounds = system, bounds
         self._remembered: dict[int, tuple[Array, Array]] = {}
         self._held = np.zeros((system.frames, system.count), bool) if held is None else held
-        whole = self._held.all(axis=1)
+        whole: Mask = np.asarray(self._held.all(axis=1))
         self.separable = system.uniform and bool((self._held.any(axis=1) == whole).all())
         self._modes = Modes(system, whole) if self.separable else None
         self._cholesky = None if self.separable else self._factorise(~self._held)

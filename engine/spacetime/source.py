@@ -13,7 +13,7 @@ from engine.spacetime.align import HeadMotion, check_points, stillest
 from engine.spacetime.closure import GAPS, Gaps
 from engine.spacetime.denoise import denoise
 from engine.spacetime.layout import Layout, standard
-from engine.take import SHAPE_INDEX, Array, Take, runs
+from engine.take import SHAPE_INDEX, Array, Mask, Take, runs
 
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 # Pairs of markers that meet, by gap. Lip markers sit on the outside: closed is how far apart they are at rest.
@@ -134,7 +134,7 @@ def bridge(displacements: Array) -> tuple[Array, Array]:
     believed = np.ones((len(displacements) - 1, displacements.shape[1]))
     frames = np.arange(len(displacements))
     for marker in range(displacements.shape[1]):
-        gone = ~np.isfinite(displacements[:, marker]).all(axis=1)
+        gone: Mask = ~np.asarray(np.isfinite(displacements[:, marker]).all(axis=1))
         if not gone.any():
             continue
         seen = np.flatnonzero(~gone)

@@ -60,7 +60,7 @@ class System:
     @property
     def count(self) -> int:
         """Return m, the number of shapes."""
-        return self.basis.shape[1]
+        return int(self.basis.shape[1])
 
     @property
     def uniform(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sparse
+from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from engine.spacetime.system import System
@@ -33,9 +33,7 @@ def stacked(system: System, source: Array, places: Array | None) -> tuple[sparse
     return sparse.csc_matrix(sparse.vstack(rows)), np.concatenate(sides)
 
 
-def solve(
-    system: System, source: Array, held: Mask, values: Array, places: Array | None = None
-) -> Array:
+def solve(system: System, source: Array, held: Mask, values: Array, places: Array | None = None) -> Array:
     """Weights, (f, m), by the normal equations over the weights that are not held, refined once."""
     matrix, side = stacked(system, source, places)
     flat, free = np.where(held, values, 0.0).ravel(), np.flatnonzero(~held.ravel())

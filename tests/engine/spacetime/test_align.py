@@ -107,5 +107,5 @@ def test_a_frame_without_enough_markers_is_named() -> None:
     with pytest.raises(EditError, match="frame 3 only 2 markers"):
         procrustes(seen, FACE)
     seen[3] = np.outer(np.arange(20), [1.0, 2.0, 3.0])
-    with pytest.raises(EditError, match="frame 3 .* one line"):
+    with pytest.raises(EditError, match=r"frame 3 .* one line"):
         procrustes(seen, FACE)

@@ -8,8 +8,8 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from engine.errors import EditError
-from engine.spacetime.prior import from_shapes
 from engine.spacetime.bounded import Bounds
+from engine.spacetime.prior import from_shapes
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.system import Position, System
 from engine.take import Array, Mask
