@@ -11,6 +11,7 @@ import numpy as np
 
 from engine.character import Character, bundled
 from engine.corpus import Piece, data_folder, load_takes, pieces_of, split
+from engine.errors import EngineError
 from engine.evaluate import Report, Row, ict
 from engine.evaluate.spacetime_baselines import RANGE, per_frame, per_frame_bounded, per_frame_prior
 from engine.spacetime.closure import Gaps
@@ -33,6 +34,7 @@ STRETCH = np.array([1.0, 1.3, 1.0])  # the proportion change: a face 1.3 times a
 NOISE_MM = 1.0
 GAP_SHARE, GAP_FRAMES = 0.1, 10.0
 SEED = 0
+FIGURE_FRAMES = 400
 
 
 def _clean(source: Source, rng: np.random.Generator) -> Source:
@@ -108,6 +110,47 @@ def table(data: Path | None, report: Report) -> list[Row]:
             report(f"{condition}: {name}")
             rows.append({"method": name, "condition": condition, **measure(takes, method, condition)})
     return rows
+
+
+def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
+    """Draw velocity errors along a take, as the paper's figure 11, and the lips and a lid on the second head.
+
+    Raises `EngineError` where matplotlib is not installed.
+    """
+    try:
+        import matplotlib
+    except ImportError:
+        raise EngineError("Figures need matplotlib.", "Install it with: pip install 'retake[figures]'.") from None
+    matplotlib.use("Agg")
+    from matplotlib.figure import Figure
+
+    piece = max(pieces(data), key=lambda each: float(each.weights.std(axis=0).sum()))
+    truth = shown(piece.weights[:FIGURE_FRAMES])
+    ours, other = _heads()
+    source = from_take(Take(truth, MODEL_FPS), ours.character, ours.layout)
+    figure = Figure(figsize=(11, 8), layout="constrained")
+    speed, lips, lid = figure.subplots(3, 1, sharex=True)
+    for name, method in METHODS.items():
+        report(f"figure: {name}")
+        there, used = _carry(source, other, method)
+        moved = there[:, used.shapes] @ used.basis.T - used.motion
+        error = np.sqrt((np.diff(moved, axis=0) ** 2).sum(axis=1) / len(ours.layout.names))
+        speed.plot(error, label=name, linewidth=0.9)
+        apart = other.gaps.sizes(shown(there))
+        lips.plot(apart[:, 0], linewidth=0.9)
+        lid.plot(apart[:, 3], linewidth=0.9)
+    for axes, column in ((lips, 0), (lid, 3)):
+        axes.plot(source.gaps[:, column], color="black", linewidth=1.4, label="source")
+        axes.axhline(CLOSED_MM, color="grey", linewidth=0.6, linestyle="--")
+    speed.set_ylabel("velocity error\nmm per frame")
+    lips.set_ylabel("lips apart, mm")
+    lid.set_ylabel("left lids apart, mm")
+    lid.set_xlabel(f"frame of {piece.source}")
+    speed.legend(fontsize=8, ncols=3)
+    lips.legend(fontsize=8)
+    path = folder / "spacetime_velocity.png"
+    figure.savefig(path, dpi=130)
+    return [path]
 
 
 def measure(takes: list[Piece], method: Callable[[Correspondence], Array], condition: str) -> dict[str, float]:

@@ -126,6 +126,18 @@ def test_a_part_is_solved_as_a_take_of_its_own(played: Source) -> None:
     assert len(retarget(part, bundled())) == len(part) == 40
 
 
+def _without(markers: Markers, index: int) -> Markers:
+    positions = markers.positions.copy()
+    positions[0, index] = np.nan
+    return replace(markers, positions=positions)
+
+
+def _doubled(markers: Markers) -> Markers:
+    positions = markers.positions.copy()
+    positions[:, 1] = positions[:, 0]
+    return replace(markers, positions=positions)
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [
@@ -137,18 +149,6 @@ def test_a_part_is_solved_as_a_take_of_its_own(played: Source) -> None:
 def test_captures_that_cannot_be_used_say_why(played: Source, change: object, says: str) -> None:
     with pytest.raises(EditError, match=says):
         retarget(from_markers(change(_captured(played))), bundled())  # type: ignore[operator]
-
-
-def _without(markers: Markers, index: int) -> Markers:
-    positions = markers.positions.copy()
-    positions[0, index] = np.nan
-    return replace(markers, positions=positions)
-
-
-def _doubled(markers: Markers) -> Markers:
-    positions = markers.positions.copy()
-    positions[:, 1] = positions[:, 0]
-    return replace(markers, positions=positions)
 
 
 def test_a_neutral_frame_outside_the_capture_is_refused(played: Source) -> None:
