@@ -16,7 +16,7 @@ from engine.evaluate import Report, Row, ict
 from engine.evaluate.spacetime_baselines import RANGE, per_frame, per_frame_bounded, per_frame_prior
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import Layout, standard
-from engine.spacetime.retarget import Correspondence, Matching, correspond, match
+from engine.spacetime.retarget import Correspondence, Matching, correspond, match, with_jaw, without_jaw
 from engine.spacetime.source import Source, from_take, shown, still_of_noise
 from engine.take import MODEL_FPS, Array, Mask, Take
 
@@ -26,7 +26,7 @@ METHODS: dict[str, Callable[[Correspondence], Array]] = {
     "movement_matching": lambda pair: match(pair, MODEL_FPS, Matching()),
     "movement_matching_free": lambda pair: match(pair, MODEL_FPS, replace(Matching(), bounds=None)),
     "per_frame": per_frame,
-    "per_frame_bounded": lambda pair: per_frame_bounded(pair, 0.0, 1.0),
+    "per_frame_bounded": lambda pair: without_jaw(pair, per_frame_bounded(with_jaw(pair), 0.0, 1.0)),
     "per_frame_bounded_paper": lambda pair: per_frame_bounded(pair, *RANGE),
     "per_frame_prior": lambda pair: per_frame_prior(pair, PRIOR_ALPHA),
 }

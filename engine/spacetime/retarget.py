@@ -18,7 +18,7 @@ from engine.spacetime.prior import Prior
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.source import Source, bridge
 from engine.spacetime.system import Position, System
-from engine.take import MODEL_FPS, SHAPES, Array, Take
+from engine.take import MODEL_FPS, SHAPE_INDEX, SHAPES, Array, Take
 
 TIGHTER = 0.8  # of the source's gap: what nearly closes errs on the closed side
 UNSEEN_MM = 0.3  # a shape that moves every marker less than this is not told by markers
@@ -110,8 +110,39 @@ def _gap_places(gaps: Gaps, sizes: Array) -> Array:
     return np.asarray((wanted - gaps.rest).reshape(len(sizes), -1))
 
 
+def with_jaw(pair: Correspondence) -> Correspondence:
+    """Return the pair with mouthClose taking the jaw along: bounds then keep lips from closing further than it opens."""
+    jaw, close = _jaw_and_close(pair)
+    basis, gap_rows = pair.basis.copy(), pair.gap_rows.copy()
+    basis[:, close] += basis[:, jaw]
+    gap_rows[:, close] += gap_rows[:, jaw]
+    return replace(pair, basis=basis, gap_rows=gap_rows)
+
+
+def without_jaw(pair: Correspondence, weights: Array) -> Array:
+    """Return weights, (frames, m), of the pair itself from those of `with_jaw`."""
+    jaw, close = _jaw_and_close(pair)
+    apart = weights.copy()
+    apart[:, jaw] += apart[:, close]
+    return apart
+
+
+def _jaw_and_close(pair: Correspondence) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Return the columns of jawOpen and mouthClose, both empty where the target lacks either."""
+    columns = [np.flatnonzero(pair.shapes == SHAPE_INDEX[name]) for name in ("jawOpen", "mouthClose")]
+    both = min(len(column) for column in columns)
+    return columns[0][:both], columns[1][:both]
+
+
 def match(pair: Correspondence, fps: float, matching: Matching) -> Array:
     """Return weights, (frames, m), by movement matching."""
+    weights = without_jaw(pair, _match(with_jaw(pair), fps, matching))
+    if matching.bounds is not None:
+        weights = np.clip(weights, matching.bounds.low, matching.bounds.high)  # the jaw, where both parts are large
+    return weights
+
+
+def _match(pair: Correspondence, fps: float, matching: Matching) -> Array:
     per_frame = (MODEL_FPS / fps) ** 2  # a velocity per frame is smaller at a higher rate; what holds places follows it
     prior, frames = pair.prior, len(pair.motion)
     beta = matching.beta * per_frame
