@@ -25,6 +25,7 @@ class EditCommand(QUndoCommand):
     session : what is edited
     patch : what the gesture came to
     title : what the user did, as the Undo menu shows it
+    marks : what the session's marks become with it, if anything
     kind, inputs : the verb, and what it was done with, so that a project file can tell and repeat it
     """
 
@@ -36,8 +37,10 @@ class EditCommand(QUndoCommand):
         *,
         kind: str = "drag",
         inputs: Mapping[str, Any] | None = None,
+        marks: Marks | None = None,
     ) -> None:
         super().__init__(title)
+        self._marks = (session.marks, marks) if marks is not None else None
         rows = slice(patch.start, patch.stop)
         self._session, self._start = session, patch.start
         self._before = (session.take.weights[rows].copy(), session.controls[rows].copy(), session.asked[rows].copy())
@@ -52,6 +55,7 @@ class EditCommand(QUndoCommand):
         QUndoCommand.__init__(command, edit.title)
         measure = bundled_measurer().measure
         command._session, command._start, command.edit = session, edit.start, edit
+        command._marks = None
         command._before = (before[0], measure(before[0]), before[1])
         command._after = (edit.weights, measure(edit.weights), edit.asked)
         return command
@@ -59,10 +63,14 @@ class EditCommand(QUndoCommand):
     def redo(self) -> None:
         """Do it, first or again."""
         self._session.replace_rows(self._start, *self._after)
+        if self._marks is not None:
+            self._session.set_marks(self._marks[1])
 
     def undo(self) -> None:
         """Take it back."""
         self._session.replace_rows(self._start, *self._before)
+        if self._marks is not None:
+            self._session.set_marks(self._marks[0])
 
 
 class MarkCommand(QUndoCommand):
