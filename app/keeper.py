@@ -146,11 +146,12 @@ class Keeper(QObject):
     # --- within
 
     def _keep(self, _: int = 0) -> None:
-        session, project = self._session, self._project
-        if self._opening or (project is not None and project.contents.original is not session.original):
+        contents, stored = self._session.contents(), self._project and self._project.contents
+        if self._opening or (stored and contents.original is not stored.original):
             return  # another take is being opened
-        contents = session.contents()
-        if project is not None or contents.edits or contents.marks != Marks():
+        if stored and stored.edits and self._session.undo.count() == 0:
+            return  # only opening empties the stack: undoing leaves its steps there
+        if stored or contents.edits or contents.marks != Marks():
             self._work.submit(contents)
 
     def _on_change(self, change: Change) -> None:
@@ -162,8 +163,6 @@ class Keeper(QObject):
     def _write(self, contents: Contents) -> None:
         """Bring the file to these contents; runs on the keeper's thread."""
         with self._lock:
-            if contents.original is not self._session.original:
-                return
             if self._project is None:
                 self._project = project.create(self._new_path(), contents)
             else:

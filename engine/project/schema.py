@@ -9,6 +9,7 @@ from engine.errors import FormatError
 APPLICATION_ID = 0x52544B45  # RTKE
 VERSION = 2
 NOT_OURS = "Open a .retake file, or a take."
+DAMAGED = "Open an older copy of it, or the take itself."
 MAX_TABLES = 64
 
 _FIRST = {
@@ -93,7 +94,7 @@ def check(database: sqlite3.Connection, name: str) -> int:
         raise FormatError(f"{name} holds other tables than a Retake project.", NOT_OURS)
     fault = database.execute("PRAGMA quick_check(1)").fetchone()[0]
     if fault != "ok":
-        raise FormatError(f"{name} is damaged.", "Open an older copy of it, or the take itself.")
+        raise FormatError(f"{name} is damaged.", DAMAGED)
     return version
 
 

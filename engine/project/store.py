@@ -175,7 +175,9 @@ def sentences(name: str) -> Iterator[None]:
     try:
         yield
     except DamagedError as error:
-        raise FormatError(f"{name} is damaged: {error}.", "Open an older copy of it, or the take itself.") from error
+        raise FormatError(f"{name} is damaged: {error}.", schema.DAMAGED) from error
+    except UnicodeError as error:
+        raise FormatError(f"{name} is damaged: it holds text that is none.", schema.DAMAGED) from error
     except sqlite3.Error as error:
         raise _told(error, name) from error
 
@@ -190,7 +192,7 @@ def _told(error: sqlite3.Error, name: str) -> EngineError:
         return EngineError(f"{name} could not be written: {error}.", "Choose another folder, or make room.")
     if kind.startswith("SQLITE_NOTADB"):
         return FormatError(f"{name} is not a Retake project.", schema.NOT_OURS)
-    return FormatError(f"{name} is damaged.", "Open an older copy of it, or the take itself.")
+    return FormatError(f"{name} is damaged.", schema.DAMAGED)
 
 
 def _connect(path: Path, name: str) -> sqlite3.Connection:
@@ -242,8 +244,14 @@ def _settle(path: Path) -> None:
 
 
 def _clear_beside(path: Path) -> None:
-    for ending in BESIDE:
-        path.with_name(path.name + ending).unlink(missing_ok=True)
+    try:
+        for ending in BESIDE:
+            path.with_name(path.name + ending).unlink(missing_ok=True)
+    except NotADirectoryError:
+        return
+    except OSError as error:
+        reason = (error.strerror or "unknown reason").lower()
+        raise EngineError(f"{path.name} could not be replaced: {reason}.", "Choose another name.") from error
 
 
 @contextmanager
