@@ -177,7 +177,7 @@ def sentences(name: str) -> Iterator[None]:
     except DamagedError as error:
         raise FormatError(f"{name} is damaged: {error}.", schema.DAMAGED) from error
     except UnicodeError as error:
-        raise FormatError(f"{name} is damaged: it holds text that is none.", schema.DAMAGED) from error
+        raise FormatError(f"{name} is damaged: a text in it cannot be read.", schema.DAMAGED) from error
     except sqlite3.Error as error:
         raise _told(error, name) from error
 

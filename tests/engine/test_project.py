@@ -69,8 +69,30 @@ CREATE TABLE media (
 
 @pytest.fixture
 def contents(random_take: Take) -> Contents:
-    edits = tuple(an_edit(random_take, seed) for seed in range(4))
-    return Contents(random_take, edits, 3, MARKS)
+    return sample(random_take)
+
+
+def sample(take: Take) -> Contents:
+    return Contents(take, tuple(an_edit(take, seed) for seed in range(4)), 3, MARKS)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """A sound project file of 40 frames, four edits and every kind of mark."""
+    rng = np.random.default_rng(3)
+    take = Take(weights=rng.random((40, len(SHAPES))), fps=30.0, name="random")
+    return stored(sample(take), tmp_path_factory.mktemp("whole"))
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """A sound project file of a take that came from a recording."""
+    return stored(Contents(livelink.read(demo.BUNDLED)), tmp_path_factory.mktemp("recorded"))
+
+
+def stored(contents: Contents, folder: Path) -> bytes:
+    project.create(folder / "a.retake", contents).close()
+    return (folder / "a.retake").read_bytes()
 
 
 def an_edit(take: Take, seed: int) -> Edit:
@@ -257,8 +279,8 @@ def test_a_migration_cut_short_leaves_the_file_as_it_was(tmp_path: Path, monkeyp
 # --- what is no project, or a damaged one
 
 
-def damaged(contents: Contents, path: Path, *statements: str, values: tuple[object, ...] = ()) -> str:
-    project.create(path, contents).close()
+def damaged(whole: bytes, path: Path, *statements: str, values: tuple[object, ...] = ()) -> str:
+    path.write_bytes(whole)
     sql(path, *statements, values=values)
     with pytest.raises(FormatError) as caught:
         Project.open(path)
@@ -282,12 +304,12 @@ def zeros(count: int) -> bytes:
         "DROP TABLE pins",
     ],
 )
-def test_other_tables_than_ours_are_refused_and_never_run(contents: Contents, tmp_path: Path, statement: str) -> None:
-    assert "other tables" in damaged(contents, tmp_path / "a.retake", statement)
+def test_other_tables_than_ours_are_refused_and_never_run(whole: bytes, tmp_path: Path, statement: str) -> None:
+    assert "other tables" in damaged(whole, tmp_path / "a.retake", statement)
 
 
-def test_a_newer_version_says_so(contents: Contents, tmp_path: Path) -> None:
-    assert "newer Retake" in damaged(contents, tmp_path / "a.retake", "PRAGMA user_version = 99")
+def test_a_newer_version_says_so(whole: bytes, tmp_path: Path) -> None:
+    assert "newer Retake" in damaged(whole, tmp_path / "a.retake", "PRAGMA user_version = 99")
 
 
 @pytest.mark.parametrize(
@@ -329,10 +351,8 @@ def test_a_newer_version_says_so(contents: Contents, tmp_path: Path) -> None:
         ("UPDATE media SET offset_s = ?", -9e999),
     ],
 )
-def test_values_that_cannot_be_are_a_sentence(
-    contents: Contents, tmp_path: Path, statement: str, value: object
-) -> None:
-    assert "damaged" in damaged(contents, tmp_path / "a.retake", statement, values=(value,))
+def test_values_that_cannot_be_are_a_sentence(whole: bytes, tmp_path: Path, statement: str, value: object) -> None:
+    assert "damaged" in damaged(whole, tmp_path / "a.retake", statement, values=(value,))
 
 
 @pytest.mark.parametrize(
@@ -347,14 +367,11 @@ def test_values_that_cannot_be_are_a_sentence(
         ("UPDATE origin SET newline = ?", b"\x00"),
     ],
 )
-def test_an_origin_that_cannot_be_is_a_sentence(tmp_path: Path, statement: str, value: object) -> None:
-    take = livelink.read(demo.BUNDLED)
-    assert "damaged" in damaged(Contents(take), tmp_path / "a.retake", statement, values=(value,))
+def test_an_origin_that_cannot_be_is_a_sentence(recorded: bytes, tmp_path: Path, statement: str, value: object) -> None:
+    assert "damaged" in damaged(recorded, tmp_path / "a.retake", statement, values=(value,))
 
 
-def test_a_small_file_cannot_fill_the_memory(
-    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_small_file_cannot_fill_the_memory(whole: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("engine.project.blobs.ORDINARY_BYTES", 2**20)
     rows = zeros(40 * len(SHAPES) * 8)
     asked = zeros(40 * len(CONTROLS) * 8)
@@ -364,7 +381,7 @@ def test_a_small_file_cannot_fill_the_memory(
         f"SELECT i, 'a', 'b', '{{}}', 0, 40, x'{rows.hex()}', "
         f"'{json.dumps([control.name for control in CONTROLS])}', x'{asked.hex()}' FROM n",
     )
-    assert "more than it can hold" in damaged(contents, tmp_path / "a.retake", *statements)
+    assert "more than it can hold" in damaged(whole, tmp_path / "a.retake", *statements)
 
 
 @pytest.mark.parametrize(
@@ -392,13 +409,11 @@ def test_the_database_of_another_program_is_left_as_it_is(tmp_path: Path) -> Non
     assert path.read_bytes() == before and len(list(tmp_path.iterdir())) == 1
 
 
-def test_flipped_and_missing_bytes_give_a_project_or_a_sentence(contents: Contents, tmp_path: Path) -> None:
-    whole = tmp_path / "a.retake"
-    project.create(whole, contents).close()
-    content, rng = whole.read_bytes(), np.random.default_rng(5)
+def test_flipped_and_missing_bytes_give_a_project_or_a_sentence(whole: bytes, tmp_path: Path) -> None:
+    rng = np.random.default_rng(5)
     refused = 0
     for trial in range(150):
-        broken = bytearray(content)
+        broken = bytearray(whole)
         if trial % 3 == 0:
             del broken[int(rng.integers(0, len(broken))) :]
         else:
