@@ -37,7 +37,7 @@ class Budget:
 
 def pack(array: npt.NDArray[Any]) -> bytes:
     """Return an array's values as little-endian bytes in a zlib stream, compressed where that saves half or more."""
-    content = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).tobytes()
+    content = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).reshape(-1).view("u1").data
     step = max(SAMPLE_BYTES, len(content) // SAMPLES)
     sample = b"".join(content[at : at + SAMPLE_BYTES] for at in range(0, len(content), step))
     worth_it = len(zlib.compress(sample, 1)) < WORTH_IT * len(sample)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 from typing import Any
 
 import numpy as np
@@ -113,6 +114,17 @@ class Contents:
     edits: tuple[Edit, ...] = ()
     position: int = 0
     marks: Marks = Marks()
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a project is, without reading all of it: the take's name, its length, edits in effect, last change."""
+
+    name: str
+    frames: int
+    fps: float
+    edits: int
+    changed: datetime
 
 
 @dataclass(frozen=True, eq=False)

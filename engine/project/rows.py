@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Iterable
+from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from engine.controls import CONTROL_INDEX, CONTROLS
 from engine.errors import EngineError
 from engine.formats.livelink import DAY_S, MAX_COLUMNS, Origin
 from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
-from engine.project.records import Contents, Edit, Marks, Media, Note, Pin, Span
+from engine.project.records import Contents, Edit, Marks, Media, Note, Pin, Span, Summary
 from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
 MAX_FRAMES = 1_000_000  # over four hours at 60 fps
@@ -43,6 +44,18 @@ def read_contents(database: sqlite3.Connection, budget: Budget) -> Contents:
         raise DamagedError(error.sentence.rstrip(".")) from error
 
 
+def read_summary(database: sqlite3.Connection) -> Summary:
+    """Return what a checked file is; raises `DamagedError`."""
+    name, frames, fps = one(database, "SELECT name, frames, fps FROM take")
+    position, changed = one(database, "SELECT position, changed FROM state")
+    _require(1 <= frames <= MAX_FRAMES and 0 < fps <= MAX_FPS, "its length or frame rate is not possible")
+    try:
+        when = datetime.fromisoformat(changed)
+    except ValueError as error:
+        raise DamagedError("the time of its last change is none") from error
+    return Summary(name, frames, fps, position, when if when.tzinfo else when.replace(tzinfo=UTC))
+
+
 def write_edits(database: sqlite3.Connection, first: int, edits: Iterable[Edit]) -> None:
     """Let these edits follow the first so many, in place of what came after."""
     database.execute("DELETE FROM edits WHERE place >= ?", (first,))
@@ -70,8 +83,9 @@ def write_marks(database: sqlite3.Connection, marks: Marks) -> None:
 
 
 def write_state(database: sqlite3.Connection, contents: Contents) -> None:
-    """Write the place in the undo history, and the verdict."""
-    database.execute("INSERT OR REPLACE INTO state VALUES (1, ?, ?)", (contents.position, contents.marks.verdict))
+    """Write the place in the undo history, the verdict, and that it is so from now on."""
+    row = contents.position, contents.marks.verdict, datetime.now(UTC).isoformat(timespec="seconds")
+    database.execute("INSERT OR REPLACE INTO state VALUES (1, ?, ?, ?)", row)
 
 
 def _write_take(database: sqlite3.Connection, take: Take) -> None:

@@ -51,12 +51,16 @@ _PINS = """CREATE TABLE pins (
   place INTEGER PRIMARY KEY,
   frame INTEGER NOT NULL, weights TEXT NOT NULL, start INTEGER NOT NULL, stop INTEGER NOT NULL
 ) STRICT"""
+_STATE = """CREATE TABLE state (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  position INTEGER NOT NULL, verdict TEXT NOT NULL, changed TEXT NOT NULL
+) STRICT"""
 _MEDIA = """CREATE TABLE media (
   place INTEGER PRIMARY KEY,
   kind TEXT NOT NULL, path TEXT NOT NULL, sha256 TEXT NOT NULL, offset_s REAL NOT NULL
 ) STRICT"""
 
-SCHEMAS: dict[int, dict[str, str]] = {1: _FIRST, 2: {**_FIRST, "pins": _PINS, "media": _MEDIA}}
+SCHEMAS: dict[int, dict[str, str]] = {1: _FIRST, 2: {**_FIRST, "pins": _PINS, "media": _MEDIA, "state": _STATE}}
 # From each version to the next. A table is made anew and never altered, so that its text is that of a new file.
 MIGRATIONS: dict[int, tuple[str, ...]] = {
     1: (
@@ -65,6 +69,10 @@ MIGRATIONS: dict[int, tuple[str, ...]] = {
         _MEDIA,
         "INSERT INTO media SELECT place, kind, path, sha256, 0.0 FROM media_1",
         "DROP TABLE media_1",
+        "ALTER TABLE state RENAME TO state_1",
+        _STATE,
+        "INSERT INTO state SELECT id, position, verdict, strftime('%Y-%m-%dT%H:%M:%SZ', 'now') FROM state_1",
+        "DROP TABLE state_1",
     ),
 }
 

@@ -8,15 +8,13 @@ import sqlite3
 import tempfile
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
-from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 from engine.errors import EngineError, FormatError
 from engine.formats.atomic import replacement
 from engine.project import rows, schema
 from engine.project.blobs import Budget, DamagedError
-from engine.project.records import Contents
+from engine.project.records import Contents, Summary
 
 ENDING = ".retake"
 MAX_BLOB_BYTES = 2**29
@@ -25,17 +23,6 @@ BESIDE = ("-wal", "-shm", "-journal")  # what SQLite lays beside a database
 
 class InUseError(EngineError):
     """Another running program, or another window, has the project open."""
-
-
-@dataclass(frozen=True)
-class Summary:
-    """What a project is, without reading all of it: the take's name, its length, edits in effect, last change."""
-
-    name: str
-    frames: int
-    fps: float
-    edits: int
-    changed: datetime
 
 
 class Project:
@@ -154,11 +141,8 @@ def create(path: Path, contents: Contents) -> Project:
 def peek(path: Path) -> Summary:
     """Return what a project is; raises as `Project.open` does."""
     with sentences(path.name), closing(_connect(path, path.name)) as database:
-        schema.check(database, path.name)
-        name, frames, fps = rows.one(database, "SELECT name, frames, fps FROM take")
-        (edits,) = rows.one(database, "SELECT position FROM state")
-    changed = datetime.fromtimestamp(path.stat().st_mtime, UTC)
-    return Summary(name, frames, fps, edits, changed)
+        schema.migrate(database, schema.check(database, path.name))
+        return rows.read_summary(database)
 
 
 def delete(path: Path) -> None:
@@ -217,7 +201,9 @@ def _scrap(path: Path) -> sqlite3.Connection:
 def _read(database: sqlite3.Connection, path: Path) -> Contents:
     with sentences(path.name):
         schema.migrate(database, schema.check(database, path.name))
-        return rows.read_contents(database, Budget(path.stat().st_size))
+        log = path.with_name(f"{path.name}-wal")
+        held = path.stat().st_size + (log.stat().st_size if log.exists() else 0)
+        return rows.read_contents(database, Budget(held))
 
 
 def _attach(path: Path, contents: Contents) -> Project:

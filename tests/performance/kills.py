@@ -21,6 +21,8 @@ from engine.take import SHAPES, Take
 LONGEST_S = 0.4  # of a session's life
 LATEST = 20  # edits after which a session begins to undo more than it does
 FRAMES = 2000
+SAVED_FRAMES = 8_000  # long enough for a save to take a while
+SAVES = 4  # that a session may come to
 
 
 def fingerprint(contents: Contents) -> str:
@@ -69,7 +71,7 @@ def edit_until_killed(folder: Path, seed: int, tell: Connection) -> None:
 def save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
     """Edit a project and save copies over one and the same file for ever."""
     rng = np.random.default_rng(seed)
-    contents = Contents(Take(weights=rng.random((FRAMES, len(SHAPES))), fps=60.0, name="killed"))
+    contents = Contents(Take(weights=rng.random((SAVED_FRAMES, len(SHAPES))), fps=60.0, name="killed"))
     target = folder / "saved.retake"
     create(target, contents).close()
     tell.send(("doing", fingerprint(contents)))
@@ -81,6 +83,7 @@ def save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
         contents = Contents(contents.original, edits, len(edits))
         tell.send(("doing", fingerprint(contents)))
         project.put(contents)
+        tell.send(("saving", ""))
         copy = project.save_as(target)
         tell.send(("kept", fingerprint(contents)))
         if rng.random() < 0.5:  # what a program that saved and went on leaves: steps that only the log has
@@ -102,15 +105,36 @@ def start(session: object, folder: Path, seed: int) -> tuple[multiprocessing.pro
     return process, told
 
 
-def kill(process: multiprocessing.process.BaseProcess, told: Connection, after_s: float) -> list[tuple[str, str]]:
-    """Let a session live so long after its first word, kill it, and return what it had told."""
-    messages = [told.recv()]
-    until = time.perf_counter() + after_s
+def listen(told: Connection, seconds: float) -> list[tuple[str, str]]:
+    """Return what a session tells within a time."""
+    messages = []
+    until = time.perf_counter() + seconds
     while (left := until - time.perf_counter()) > 0:
         if told.poll(left):
             messages.append(told.recv())
+    return messages
+
+
+def listen_to_saves(told: Connection, rng: np.random.Generator) -> list[tuple[str, str]]:
+    """Return what a session tells until a moment within one of its saves."""
+    messages: list[tuple[str, str]] = []
+
+    def until(kind: str) -> float:
+        while not messages or messages[-1][0] != kind:
+            messages.append(told.recv())
+        return time.perf_counter()
+
+    for _ in range(int(rng.integers(1, SAVES))):
+        took_s = -until("saving") + until("kept")
+    until("saving")
+    return messages + listen(told, float(rng.uniform(0, took_s)))
+
+
+def kill(process: multiprocessing.process.BaseProcess, told: Connection) -> list[tuple[str, str]]:
+    """Kill a session and return what it had told besides."""
     process.kill()  # SIGKILL
     process.join()
+    messages = []
     try:
         while True:
             messages.append(told.recv())
@@ -127,7 +151,7 @@ def may_be_found(messages: list[tuple[str, str]]) -> tuple[list[str], int]:
         assert kind != "failed", text
         if kind == "doing":
             reached.append(text)
-        else:
+        elif kind == "kept":
             safe, reports = reached.index(text, safe), reports + 1
     return reached[safe:], reports
 
@@ -138,7 +162,9 @@ def check(seed: int, folder: Path, *, saving: bool) -> int:
     session = save_until_killed if saving else edit_until_killed
     process, told = start(session, folder, seed)
     try:
-        messages = kill(process, told, float(rng.uniform(0, LONGEST_S)))
+        messages = [told.recv()]
+        messages += listen_to_saves(told, rng) if saving else listen(told, float(rng.uniform(0, LONGEST_S)))
+        messages += kill(process, told)
     finally:
         process.kill()
     allowed, reports = may_be_found(messages)
