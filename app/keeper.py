@@ -146,11 +146,12 @@ class Keeper(QObject):
     # --- within
 
     def _keep(self, _: int = 0) -> None:
-        contents, stored = self._session.contents(), self._project and self._project.contents
-        if self._opening or (stored and contents.original is not stored.original):
+        stored = self._project and self._project.contents
+        if self._opening or (stored and stored.original is not self._session.original):
             return  # another take is being opened
         if stored and stored.edits and self._session.undo.count() == 0:
             return  # only opening empties the stack: undoing leaves its steps there
+        contents = self._session.contents()
         if stored or contents.edits or contents.marks != Marks():
             self._work.submit(contents)
 
