@@ -214,8 +214,10 @@ class Keeper(QObject):
         if self._project is not None and contents.original is self._project.contents.original:
             try:
                 self._project.put(contents)
-            except EngineError:
-                log.exception("the work so far could not be kept; saving all of it anew")
+            except EngineError as error:
+                if path.exists() and path.samefile(self._project.path):
+                    raise
+                log.warning("all of the work is saved anew: %s", error)
             else:
                 return self._project.save_as(path)
         return project.create(path, contents)

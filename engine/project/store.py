@@ -237,7 +237,9 @@ def _clear_beside(path: Path) -> None:
         return
     except OSError as error:
         reason = (error.strerror or "unknown reason").lower()
-        raise EngineError(f"{path.name} could not be replaced: {reason}.", "Choose another name.") from error
+        raise EngineError(
+            f"{path.name} could not be written: {reason}.", "Choose another folder, or make room."
+        ) from error
 
 
 @contextmanager

@@ -237,9 +237,16 @@ def test_a_full_disk_keeps_the_work_in_memory_until_there_is_room(qtbot: QtBot, 
         push(first._session, 1)
     assert told.args[0] == "There is no room left on the disk for a.retake." and "memory" in told.args[1]
     assert first._session.edited and first._session.undo.count() == 2
+    with pytest.raises(EngineError, match="no room left"):
+        first.save_as(tmp_path / "a.retake")
     database.execute("PRAGMA max_page_count = 1000000")
     kept(qtbot, first, lambda: push(first._session, 2))
     assert not first._session.edited
+    (tmp_path / "a.retake").unlink()
+    push(first._session, 3)
+    first.save_as(tmp_path / "a.retake")
+    first.close()
+    assert len(Project.open(tmp_path / "a.retake").contents.edits) == 4
 
 
 def test_what_cannot_be_written_is_edited_as_unsaved_work(
