@@ -10,7 +10,7 @@ from PySide6.QtGui import QUndoCommand
 
 from app.session import Session
 from engine.controls import bundled_measurer
-from engine.project import Contents, Edit, Replayed
+from engine.project import Contents, Edit, Marks, Replayed
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -63,6 +63,29 @@ class EditCommand(QUndoCommand):
     def undo(self) -> None:
         """Take it back."""
         self._session.replace_rows(self._start, *self._before)
+
+
+class MarkCommand(QUndoCommand):
+    """Puts other spans, pins or notes in place.
+
+    Parameters
+    ----------
+    session : what is marked
+    marks : what it shall hold
+    title : what the user did, as the Undo menu shows it
+    """
+
+    def __init__(self, session: Session, marks: Marks, title: str) -> None:
+        super().__init__(title)
+        self._session, self._before, self._after = session, session.marks, marks
+
+    def redo(self) -> None:
+        """Do it, first or again."""
+        self._session.set_marks(self._after)
+
+    def undo(self) -> None:
+        """Take it back."""
+        self._session.set_marks(self._before)
 
 
 def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[QUndoCommand]:

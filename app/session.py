@@ -11,9 +11,10 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
+from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from engine.controls import CONTROLS, bundled_measurer
-from engine.project import Contents, Marks, Replayed
-from engine.take import Array, Take
+from engine.project import Contents, Marks, Replayed, Span
+from engine.take import Array, Take, runs
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -32,6 +33,7 @@ class Change(Flag):
     VIEW = auto()  # which frames are on screen
     SELECTION = auto()  # the range that tools and playback work on
     LANE = auto()  # the lane that is worked on
+    LANES = auto()  # which lanes there are
     TOOL = auto()
     SAVED = auto()
     MARKS = auto()  # spans, pins, notes, media or the verdict
@@ -51,7 +53,9 @@ class Session(QObject):
     playhead : frame
     view : first and last frame on screen, fractional
     selection : half-open range of frames, or None
-    lane : column of the control that is worked on
+    lane : the curve that is worked on, an index into CURVES
+    expanded : controls whose weights are shown below them
+    tool : name of the tool that the mouse works with in the lanes
     radius_frames, strength, exact : the Drag tool's brush
     marks : spans, pins, notes, media and verdict
     """
@@ -62,7 +66,7 @@ class Session(QObject):
         super().__init__()
         self.undo = QUndoStack(self)
         self.path: Path | None = None
-        self.strength, self.exact = 1.0, False
+        self.strength, self.exact, self.tool = 1.0, False, "drag"
         self._restoring = False
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
@@ -75,10 +79,11 @@ class Session(QObject):
         measured.flags.writeable = False
         self.controls = self.original_controls = measured
         self.asked = np.full_like(measured, np.nan)
-        self.marks = Marks()
+        self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
         self.draft: Patch | None = None
         self.selection: tuple[int, int] | None = None
         self.lane = 0
+        self.expanded: frozenset[int] = frozenset()
         self.radius_frames = max(2, round(BRUSH_S * take.fps))
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
@@ -137,12 +142,45 @@ class Session(QObject):
             return np.asarray(draft.weights[frame - draft.start])
         return np.asarray(self.take.weights[frame])
 
-    def shown_controls(self, frame: int) -> Array:
-        """Return the controls to show at a frame, (8,) mm."""
+    @property
+    def lanes(self) -> list[int]:
+        """The curves on screen from top to bottom, as indices into CURVES."""
+        shown: list[int] = []
+        for control in range(len(CONTROLS)):
+            shown.append(control)
+            if control in self.expanded:
+                shown += [lane for lane in weights_under(control) if lane not in shown]
+        return shown
+
+    def curve(self, lane: int) -> Array:
+        """Return a curve as edited so far, (frames,)."""
+        source = self.take.weights if CURVES[lane].is_weight else self.controls
+        return np.asarray(source[:, CURVES[lane].column])
+
+    def original_curve(self, lane: int) -> Array:
+        """Return a curve as opened, (frames,)."""
+        source = self.original.weights if CURVES[lane].is_weight else self.original_controls
+        return np.asarray(source[:, CURVES[lane].column])
+
+    def asked_curve(self, lane: int) -> Array | None:
+        """Return what the edits asked of a curve, (frames,) with NaN where nothing was asked; None for a weight."""
+        return None if CURVES[lane].is_weight else np.asarray(self.asked[:, CURVES[lane].column])
+
+    def draft_curve(self, lane: int) -> Array | None:
+        """Return what a curve would become in the frames of the draft, (n,)."""
+        if self.draft is None:
+            return None
+        source = self.draft.weights if CURVES[lane].is_weight else self.draft.reached
+        return np.asarray(source[:, CURVES[lane].column])
+
+    def value(self, lane: int, frame: int) -> float:
+        """Return the value to show at a frame: the draft's where it has one."""
         draft = self.draft
         if draft is not None and draft.start <= frame < draft.stop:
-            return np.asarray(draft.reached[frame - draft.start])
-        return np.asarray(self.controls[frame])
+            drafted = self.draft_curve(lane)
+            assert drafted is not None
+            return float(drafted[frame - draft.start])
+        return float(self.curve(lane)[frame])
 
     def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array) -> None:
         """Put rows of weights, controls and asked values in place; for commands only."""
@@ -197,10 +235,26 @@ class Session(QObject):
             self.changed.emit(Change.SELECTION)
 
     def choose_lane(self, lane: int) -> None:
-        """Work on another control."""
-        if lane != self.lane and 0 <= lane < len(CONTROLS):
+        """Work on another curve."""
+        if lane != self.lane and 0 <= lane < len(CURVES):
             self.lane = lane
             self.changed.emit(Change.LANE)
+
+    def expand(self, lane: int) -> None:
+        """Show the weights under a control, or put them away, named by the control or one of them."""
+        above = [control for control in sorted(self.expanded) if lane in weights_under(control)]
+        control = above[0] if lane >= FIRST_WEIGHT and above else lane
+        if 0 <= control < FIRST_WEIGHT:
+            self.expanded ^= {control}
+            if self.lane not in self.lanes:
+                self.lane = control
+            self.changed.emit(Change.LANES | Change.LANE)
+
+    def choose_tool(self, name: str) -> None:
+        """Let the mouse work with another tool."""
+        if name != self.tool:
+            self.tool = name
+            self.changed.emit(Change.TOOL)
 
     def set_brush(
         self, *, radius_frames: int | None = None, strength: float | None = None, exact: bool | None = None
