@@ -19,7 +19,7 @@ from app.session import Change, Session
 from app.settings import NAME
 from engine import project
 from engine.errors import EngineError
-from engine.project import Contents, Marks, Project
+from engine.project import Contents, Project
 from engine.take import timecode
 
 log = logging.getLogger(__name__)
@@ -152,14 +152,14 @@ class Keeper(QObject):
         if stored and stored.edits and self._session.undo.count() == 0:
             return  # only opening empties the stack: undoing leaves its steps there
         contents = self._session.contents()
-        if stored or contents.edits or contents.marks != Marks():
+        if stored or contents.edits:
             self._work.submit(contents)
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE and not self._opening:
             self._detach(delete=False)
-        elif change & Change.MARKS:
-            self._keep()
+        elif change & Change.MARKS and not self._opening:
+            self._work.submit(self._session.contents())
 
     def _write(self, contents: Contents) -> None:
         """Bring the file to these contents; runs on the keeper's thread."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from typing import Any
 
 import numpy as np
 
 from engine.controls import CONTROLS
-from engine.take import Array, Take
+from engine.take import SHAPES, Array, Take
+
+MARK = "mark"  # kind of an edit whose inputs are marks before and after
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +99,23 @@ class Marks:
     notes: tuple[Note, ...] = ()
     media: tuple[Media, ...] = ()
     verdict: str = ""
+
+
+def marks_of(stored: Mapping[str, Any]) -> Marks:
+    """Return marks from what `dataclasses.asdict` made of them; raises `KeyError` or `TypeError` for anything else."""
+    return Marks(
+        spans=tuple(Span(**entry) for entry in stored["spans"]),
+        pins=tuple(Pin(**entry) for entry in stored["pins"]),
+        notes=tuple(Note(**entry) for entry in stored["notes"]),
+        media=tuple(Media(**entry) for entry in stored["media"]),
+        verdict=stored["verdict"],
+    )
+
+
+def mark_edit(title: str, before: Marks, after: Marks) -> Edit:
+    """Return the edit that changes marks and no frame."""
+    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
+    return Edit(MARK, title, 0, *rows, {"before": asdict(before), "after": asdict(after)})
 
 
 @dataclass(frozen=True, eq=False)

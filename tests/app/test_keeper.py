@@ -10,13 +10,13 @@ import pytest
 from PySide6.QtGui import QUndoCommand
 from pytestqt.qtbot import QtBot
 
-from app.commands import EditCommand
+from app.commands import EditCommand, MarkCommand
 from app.keeper import Keeper
 from app.session import Session
 from engine import project
 from engine.controls import measure
 from engine.errors import EngineError
-from engine.project import Marks, Note, Project
+from engine.project import Marks, Note, Pin, Project, Span
 from engine.take import SHAPES, Take
 from tests.performance import kills
 
@@ -72,9 +72,14 @@ def alike(left: Session, right: Session) -> bool:
     return True
 
 
-def test_nothing_is_written_before_the_first_edit(make: Made, tmp_path: Path) -> None:
-    make().close()
-    assert not (tmp_path / "data").exists()
+def test_nothing_is_written_before_the_first_edit(qtbot: QtBot, make: Made, tmp_path: Path) -> None:
+    first = make()
+    kept(qtbot, first, lambda: push(first._session, 1))
+    first.forget()
+    lost = np.arange(9) < 3
+    first._session.open(Take(weights=np.zeros((9, len(SHAPES))), fps=24.0, lost=lost), None)
+    first.close()
+    assert list((tmp_path / "data" / "unsaved").iterdir()) == []
 
 
 def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make: Made) -> None:
@@ -85,13 +90,17 @@ def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make:
     kept(qtbot, first, session.undo.undo)
     kept(qtbot, first, session.undo.undo)
     kept(qtbot, first, session.undo.redo)
-    kept(qtbot, first, lambda: session.set_marks(Marks(notes=(Note(3, "Ana", "2025-01-02T03:04:05Z", "here"),))))
+    marked = Marks(spans=(Span(2, 9),), pins=(Pin(4, {"jawOpen": 0.5}, 0, 9),))
+    kept(qtbot, first, lambda: session.undo.push(MarkCommand(session, marked, "mark a span")))
+    noted = replace(marked, notes=(Note(3, "Ana", "2025-01-02T03:04:05Z", "here"),))
+    kept(qtbot, first, lambda: session.set_marks(noted))
+    kept(qtbot, first, lambda: session.undo.push(MarkCommand(session, replace(noted, verdict="approved"), "approve")))
     assert second.left_over() == []  # its program still runs
     first.close()
 
     (left,) = second.left_over()
-    assert (left.name, left.edits) == ("random", 3)
-    assert left.sentence.startswith("random (00:01:10), 3 edits, ")
+    assert (left.name, left.edits) == ("random", 5)
+    assert left.sentence.startswith("random (00:01:10), 5 edits, ")
     second.recover(left)
     again = second._session
     assert alike(session, again) and again.edited and again.path is None
@@ -103,6 +112,7 @@ def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make:
         session.undo.undo()
         again.undo.undo()
     np.testing.assert_array_equal(again.take.weights, again.original.weights)
+    assert again.marks == Marks()
     kept(qtbot, second, lambda: push(again, 9))  # it goes on where it was
     second.close()
     (left,) = make().left_over()

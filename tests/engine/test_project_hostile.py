@@ -42,6 +42,11 @@ def damaged(whole: bytes, path: Path, *statements: str, values: tuple[object, ..
     return caught.value.sentence
 
 
+def marked(**marks: object) -> str:
+    whole = {"spans": [], "pins": [], "notes": [], "media": [], "verdict": ""}
+    return json.dumps({"before": whole, "after": {**whole, **marks}})
+
+
 def zeros(count: int) -> bytes:
     return zlib.compress(bytes(count))
 
@@ -93,6 +98,14 @@ def test_a_newer_version_says_so(whole: bytes, tmp_path: Path) -> None:
         ("UPDATE edits SET place = place + ?", 100),
         ("UPDATE edits SET inputs = ?", "[" * 100_000),
         ("UPDATE edits SET inputs = ?", "[]"),
+        ("UPDATE edits SET kind = ?", "mark"),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", '{"before": 3, "after": []}'),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(spans=[{"start": 0, "stop": 99}])),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(spans=[{"start": "0", "stop": 9}])),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(spans=[{"start": 0.5, "stop": 9}])),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(spans=[{"start": 0, "stop": 9, "region": []}])),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(spans=[{"begin": 0}])),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(verdict=5)),
         ("UPDATE edits SET controls = ?", "[1]"),
         ("UPDATE edits SET controls = ?", json.dumps(["a"] * 5000)),
         ("UPDATE edits SET asked = ?", zeros(7)),
