@@ -200,8 +200,9 @@ def _require_sound(marks: Marks, length: int) -> None:
     _require(pins, "a pin is not within the take, or holds no pose")
     _require(notes, "a note is not within the take")
     _require(media, "an offset is not a finite number")
-    frames = [frame for mark in (*marks.spans, *marks.pins) for frame in (mark.start, mark.stop)]
-    frames += [mark.frame for mark in (*marks.pins, *marks.notes)]
+    frames = [frame for span in marks.spans for frame in (span.start, span.stop)]
+    frames += [frame for pin in marks.pins for frame in (pin.frame, pin.start, pin.stop)]
+    frames += [note.frame for note in marks.notes]
     _require(all(isinstance(frame, int) for frame in frames), "a mark is not what it should be")
     texts = [text for span in marks.spans for text in (span.region, span.kind)]
     texts += [text for note in marks.notes for text in (note.author, note.time, note.text)]
