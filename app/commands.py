@@ -10,7 +10,7 @@ from PySide6.QtGui import QUndoCommand
 
 from app.session import Session
 from engine.controls import bundled_measurer
-from engine.project import Contents, Edit, Marks, Replayed
+from engine.project import MARK, Contents, Edit, Marks, Replayed, mark_edit, marks_of
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -86,6 +86,16 @@ class MarkCommand(QUndoCommand):
     def __init__(self, session: Session, marks: Marks, title: str) -> None:
         super().__init__(title)
         self._session, self._before, self._after = session, session.marks, marks
+        self.edit = mark_edit(title, self._before, marks)
+
+    @classmethod
+    def restored(cls, session: Session, edit: Edit) -> MarkCommand:
+        """Return the command of a stored edit."""
+        command = cls.__new__(cls)
+        QUndoCommand.__init__(command, edit.title)
+        command._session, command.edit = session, edit
+        command._before, command._after = marks_of(edit.inputs["before"]), marks_of(edit.inputs["after"])
+        return command
 
     def redo(self) -> None:
         """Do it, first or again."""
@@ -99,4 +109,5 @@ class MarkCommand(QUndoCommand):
 def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[QUndoCommand]:
     """Yield the commands of a project's edits, oldest first."""
     for edit, before in zip(contents.edits, state.before, strict=True):
-        yield EditCommand.restored(session, edit, before)
+        is_mark = edit.kind == MARK
+        yield MarkCommand.restored(session, edit) if is_mark else EditCommand.restored(session, edit, before)
