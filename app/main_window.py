@@ -4,11 +4,19 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import QAction, QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence, QShowEvent
+from PySide6.QtGui import (
+    QAction,
+    QActionGroup,
+    QCloseEvent,
+    QDragEnterEvent,
+    QDropEvent,
+    QKeyEvent,
+    QKeySequence,
+    QShowEvent,
+)
 from PySide6.QtWidgets import (
     QApplication,
     QFileDialog,
@@ -16,8 +24,10 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QMainWindow,
+    QMenu,
     QMessageBox,
     QScrollArea,
+    QSizePolicy,
     QSplitter,
     QToolButton,
     QVBoxLayout,
@@ -25,29 +35,33 @@ from PySide6.QtWidgets import (
 )
 
 from app import theme
-from app.actions import ACTIONS, MENUS, TOOLBAR
-from app.curve_table import CURVES
-from app.curves.brush import eased_to
+from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
+from app.clean.section import CleanSection
 from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
 from app.curves.tools import TOOLS
+from app.edit_actions import EditActions
 from app.inference import Inference
-from app.inspector.panel import Inspector, closes
+from app.inspector.brush import BrushSection
+from app.inspector.facts import FactsSection
+from app.inspector.panel import Inspector
+from app.inspector.smooth import SmoothSection
+from app.inspector.value import ValueSection
 from app.notices import Notices
+from app.pins.section import PinsSection
 from app.preview.panel import PreviewPanel
 from app.session import Change, Session
 from app.settings import Settings
+from app.spans.filling import Filling
+from app.spans.section import SpansSection
 from app.theme import GRID
+from app.time_actions import TimeActions
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
 from engine.errors import EngineError
 from engine.formats import FORMATS, read_take, write_take
-from engine.take import Array, Take, runs, timecode
+from engine.take import Take, timecode
 
-if TYPE_CHECKING:
-    from engine.editing import Dragger, Patch
-
-EASE_FRAMES = 5
 HINTS = "Drag any curve up or down: the face follows.   Hatched: frames the tracker lost.   Space plays."
 
 
@@ -71,10 +85,25 @@ class MainWindow(QMainWindow):
         self.preview = PreviewPanel(self.session, self.inference)
         self.curves = CurvesPanel(self.session, self.inference, self.colours)
         self.timeline = Timeline(self.session, self.colours, gutter_px=GUTTER_PX)
-        self.inspector = Inspector(self.session)
+        self.filling = Filling(self.session)
+        self.edits = EditActions(self.session, self.inference, self.curves, self.filling)
+        self.time = TimeActions(self.session, self.transport, self.filling)
+        self.brush, self.value = BrushSection(self.session), ValueSection(self.session)
+        self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
+        self.smoothing = SmoothSection(self.session)
+        self.spans = SpansSection(self.session, self.filling)
+        sections = (
+            self.brush,
+            self.value,
+            self.pins,
+            self.clean,
+            self.smoothing,
+            self.spans,
+            FactsSection(self.session),
+        )
+        self.inspector = Inspector(self.session, sections)
         self._latencies_ms: list[float] = []
         self._saved_view = ""
-        self._copied: Array | None = None
         self.setAcceptDrops(True)
         self._make_actions()
         self._lay_out()
@@ -89,11 +118,11 @@ class MainWindow(QMainWindow):
         self.actions_by_name: dict[str, QAction] = {}
         for entry in ACTIONS:
             action = QAction(entry.title, self, checkable=entry.checkable)
-            action.setShortcuts([QKeySequence(key) for key in entry.keys])
-            action.triggered.connect(lambda _=False, name=entry.name: getattr(self, name)())
+            action.triggered.connect(partial(self._do, entry.name))
             self.actions_by_name[entry.name] = action
+        self._menus: dict[str, QMenu] = {}
         for title in MENUS:
-            menu = self.menuBar().addMenu(title)
+            menu = self._menus[title] = self.menuBar().addMenu(title)
             for entry in ACTIONS:
                 if entry.menu == title:
                     menu.addAction(self.actions_by_name[entry.name])
@@ -102,6 +131,28 @@ class MainWindow(QMainWindow):
                 self._recent.aboutToShow.connect(self._fill_recent)
         self._show_tool()
         self.actions_by_name["light_theme"].setChecked(self.settings.light)
+        self._make_presets()
+
+    def _make_presets(self) -> None:
+        menu = self._menus["View"].addMenu("Shortcuts")
+        self._presets = QActionGroup(self)
+        for name in PRESETS:
+            action = self._presets.addAction(menu.addAction(name))
+            action.setCheckable(True)
+            action.setChecked(name == self.settings.preset)
+            action.triggered.connect(partial(self.use_preset, name))
+        self.use_preset(self.settings.preset)
+
+    def use_preset(self, name: str, *_: bool) -> None:
+        """Use the shortcuts of a named program."""
+        self.settings.preset = name
+        for entry in ACTIONS:
+            shortcuts = [QKeySequence(key) for key in keys_of(entry, name)]
+            self.actions_by_name[entry.name].setShortcuts(shortcuts)
+
+    def _do(self, name: str, *_: bool) -> None:
+        owner = next(each for each in (self, self.edits, self.time) if name in type(each).__dict__)
+        getattr(owner, name)()
 
     def _toolbar(self) -> QFrame:
         bar = QFrame()
@@ -128,11 +179,12 @@ class MainWindow(QMainWindow):
                 button.setAccessibleName(entry.title)
                 row.addWidget(button)
                 self.buttons[name] = button
-        row.addStretch(1)
         self.hints = QLabel(HINTS)
         self.hints.setProperty("quiet", True)
-        row.addWidget(self.hints)
-        row.addStretch(1)
+        self.hints.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        # it may be cut off where the window is narrow, but must not keep it from being so
+        self.hints.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        row.addWidget(self.hints, 1)
         return bar
 
     def _lay_out(self) -> None:
@@ -198,13 +250,23 @@ class MainWindow(QMainWindow):
         self.preview.failed.connect(self.notices.tell)
         self.preview.timed.connect(self._timed)
         self.transport.changed.connect(self._show_transport)
-        self.inspector.close_here.connect(self.close_here)
-        self.inspector.value_typed.connect(self.set_value)
-        self.inspector.cutoff_moved.connect(self.preview_smoothing)
-        self.inspector.smooth.connect(self.smooth)
-        self.inspector.dropped.connect(self.inference.cancel)
+        self.value.close_here.connect(self.edits.close_here)
+        self.value.typed.connect(self.edits.set_value)
+        self.smoothing.moved.connect(self.edits.preview_smoothing)
+        self.smoothing.kept.connect(self.edits.smooth)
+        self.smoothing.dropped.connect(self.inference.cancel)
+        self.edits.cutoff_hz = self.smoothing.cutoff.value
+        self.edits.told.connect(self.status["notice"].setText)
+        self.time.looping = self.actions_by_name["loop"].isChecked
+        self.filling.failed.connect(self.notices.tell)
+        self.filling.changed.connect(self._show_filling)
+        self.spans.refused.connect(self.notices.tell)
+        self.timeline.marked.connect(self.spans.mark)
+        self.spans.strip.wanted.connect(self.preview.draw_strip)
+        self.preview.strip_drawn.connect(self.spans.strip.show_picture)
         self.session.undo.indexChanged.connect(self._show_undo)
         self._show_undo()
+        self._show_filling()
         application = QApplication.instance()
         if application is not None:
             application.installEventFilter(self)
@@ -317,199 +379,23 @@ class MainWindow(QMainWindow):
         self.transport.run(0.0)
         self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
         self.inference.close()
+        self.filling.close()
         self.preview.close_renderer()
 
-    # --- editing
+    # --- the window
 
-    def undo(self) -> None:
-        """Take back the last step."""
-        if not self.inference.busy:
-            self.session.undo.undo()
+    def fill(self) -> None:
+        """Fill the chosen span, or the selection."""
+        self.spans.fill()
 
-    def redo(self) -> None:
-        """Do the step that was taken back again."""
-        if not self.inference.busy:
-            self.session.undo.redo()
-
-    def cancel(self) -> None:
-        """Drop the gesture or the preview of a filter under way."""
-        self.curves.tool.cancel()
-        if self.inference.busy:
-            self.inference.cancel()
-
-    def close_here(self) -> None:
-        """Bring lips or eyelids together on the selection, or around the playhead."""
-        if closes(self.session.lane):
-            self._set_curve(0.0, f"close {CURVES[self.session.lane].title}")
-
-    def set_value(self, value_mm: float) -> None:
-        """Set the active curve at the playhead, or over the selection, to a value."""
-        curve = CURVES[self.session.lane]
-        self._set_curve(value_mm, f"set {curve.title} to {curve.shown(value_mm)}")
-
-    def _set_curve(self, value: float, title: str) -> None:
-        session = self.session
-        if self.inference.busy:
-            return
-        frames = session.selection or (session.playhead, session.playhead + 1)
-        ease_frames = EASE_FRAMES if session.selection else session.radius_frames
-        start, asked = eased_to(session.curve(session.lane), frames, value, ease_frames=ease_frames)
-        self.curves.tool.ask(session.lane, start, asked)
-        self.inference.finish(title)
-
-    def wider_brush(self) -> None:
-        """Let the brush move more frames."""
-        self.session.set_brush(radius_frames=round(self.session.radius_frames * 1.25) + 1)
-
-    def narrower_brush(self) -> None:
-        """Let the brush move fewer frames."""
-        self.session.set_brush(radius_frames=round(self.session.radius_frames / 1.25) - 1)
-
-    def drag_tool(self) -> None:
-        """Work with the Drag tool."""
-        self.session.choose_tool("drag")
-        self._show_tool()
-
-    def draw_tool(self) -> None:
-        """Work with the Draw tool."""
-        self.session.choose_tool("draw")
-        self._show_tool()
-
-    def scale_tool(self) -> None:
-        """Work with the Scale tool."""
-        self.session.choose_tool("scale")
-        self._show_tool()
+    def _show_filling(self) -> None:
+        # Enter belongs to whatever is typed into, unless there is a variant to keep
+        self.actions_by_name["accept"].setEnabled(bool(self.filling.variants))
+        self.actions_by_name["fill"].setEnabled(not self.filling.busy)
 
     def _show_tool(self) -> None:
         for name in TOOLS:
             self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
-
-    def expand_lane(self) -> None:
-        """Show the weights under the active control, or put them away."""
-        self.session.expand(self.session.lane)
-
-    def copy(self) -> None:
-        """Remember the weights of the selection, or of the frame at the playhead."""
-        session = self.session
-        start, stop = session.selection or (session.playhead, session.playhead + 1)
-        self._copied = session.take.weights[start:stop]
-        self.status["notice"].setText(f"copied {stop - start} frames")
-
-    def paste(self) -> None:
-        """Put what was copied in place from the playhead on."""
-        copied, start = self._copied, self.session.playhead
-        if copied is None or self.inference.busy:
-            return
-
-        def verb(dragger: Dragger) -> Patch:
-            from engine.retouch import paste
-
-            return paste(dragger.take, start, copied)
-
-        self.inference.run(verb)
-        self.inference.finish(f"paste {len(copied)} frames")
-
-    def preview_smoothing(self, cutoff_hz: float) -> None:
-        """Show what a Butterworth filter does to the selection, or the whole take."""
-        frames = self.session.selection or (0, len(self.session.take))
-
-        def verb(dragger: Dragger) -> Patch:
-            from engine.retouch import smooth
-
-            return smooth(dragger.take, frames, cutoff_hz)
-
-        self.inference.run(verb)
-
-    def smooth(self) -> None:
-        """Keep the smoothing at the cutoff that the inspector shows."""
-        self.preview_smoothing(self.inspector.cutoff.value())
-        self.inference.finish(f"smooth at {self.inspector.cutoff.value():g} Hz")
-
-    # --- time
-
-    def play(self) -> None:
-        """Play or pause."""
-        self.transport.toggle()
-
-    def play_forwards(self) -> None:
-        """Play forwards, faster each time."""
-        self.transport.faster(1)
-
-    def play_backwards(self) -> None:
-        """Play backwards, faster each time."""
-        self.transport.faster(-1)
-
-    def stop(self) -> None:
-        """Stand still."""
-        self.transport.run(0.0)
-
-    def loop(self) -> None:
-        """Begin again at the end, or stop there."""
-        self.transport.set_loop(self.actions_by_name["loop"].isChecked())
-
-    def next_frame(self) -> None:
-        """Go one frame on."""
-        self.session.move_playhead(self.session.playhead + 1)
-
-    def previous_frame(self) -> None:
-        """Go one frame back."""
-        self.session.move_playhead(self.session.playhead - 1)
-
-    def first_frame(self) -> None:
-        """Go to the beginning."""
-        self.session.move_playhead(0)
-
-    def last_frame(self) -> None:
-        """Go to the end."""
-        self.session.move_playhead(len(self.session.take) - 1)
-
-    def next_span(self) -> None:
-        """Go to the next span."""
-        later = [a for a, _ in runs(self.session.take.lost) if a > self.session.playhead]
-        if later:
-            self.session.move_playhead(later[0])
-
-    def previous_span(self) -> None:
-        """Go to the span before."""
-        earlier = [a for a, _ in runs(self.session.take.lost) if a < self.session.playhead]
-        if earlier:
-            self.session.move_playhead(earlier[-1])
-
-    def set_in(self) -> None:
-        """Let the selection begin at the playhead."""
-        _, stop = self.session.selection or (0, len(self.session.take))
-        self.session.select((self.session.playhead, max(stop, self.session.playhead + 1)))
-
-    def set_out(self) -> None:
-        """Let the selection end at the playhead."""
-        start, _ = self.session.selection or (0, 0)
-        self.session.select((min(start, self.session.playhead), self.session.playhead + 1))
-
-    def clear_selection(self) -> None:
-        """Select nothing."""
-        self.session.select(None)
-
-    # --- the view
-
-    def frame_all(self) -> None:
-        """Show the whole take."""
-        self.session.set_view(0.0, len(self.session.take) - 1.0)
-
-    def zoom_in(self) -> None:
-        """Show fewer frames around the playhead."""
-        self.session.zoom_view(1.5, self.session.playhead)
-
-    def zoom_out(self) -> None:
-        """Show more frames around the playhead."""
-        self.session.zoom_view(1 / 1.5, self.session.playhead)
-
-    def next_lane(self) -> None:
-        """Work on the next curve."""
-        self.session.choose_lane(self.session.lane + 1)
-
-    def previous_lane(self) -> None:
-        """Work on the curve before."""
-        self.session.choose_lane(self.session.lane - 1)
 
     def light_theme(self) -> None:
         """Switch between dark and light."""
@@ -522,9 +408,9 @@ class MainWindow(QMainWindow):
     def show_keys(self) -> None:
         """List every key."""
         rows = "".join(
-            f"<tr><td style='padding:2px 16px 2px 0'>{entry.title}</td><td>{', '.join(entry.keys)}</td></tr>"
+            f"<tr><td style='padding:2px 16px 2px 0'>{entry.title}</td><td>{', '.join(keys)}</td></tr>"
             for entry in ACTIONS
-            if entry.keys
+            if (keys := keys_of(entry, self.settings.preset))
         )
         extra = "<tr><td>See the original</td><td>hold B</td></tr>"
         self._tell("Keys", f"<table>{rows}{extra}</table>")
@@ -568,6 +454,8 @@ class MainWindow(QMainWindow):
             self._show_saved()
         if change & Change.CURVES:
             self.hints.hide()
+        if change & Change.TOOL:
+            self._show_tool()
 
     def _show_title(self) -> None:
         take = self.session.take

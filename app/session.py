@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import Flag, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QObject, Signal
-from PySide6.QtGui import QUndoStack
+from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from engine.controls import CONTROLS, bundled_measurer
-from engine.take import Array, Take
+from engine.project import Contents, Marks, Replayed, Span
+from engine.take import Array, Take, runs
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -34,6 +36,7 @@ class Change(Flag):
     LANES = auto()  # which lanes there are
     TOOL = auto()
     SAVED = auto()
+    MARKS = auto()  # spans, pins, notes, media or the verdict
 
 
 class Session(QObject):
@@ -54,6 +57,7 @@ class Session(QObject):
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
     radius_frames, strength, exact : the Drag tool's brush
+    marks : spans, pins, notes, media and verdict
     """
 
     changed = Signal(object)
@@ -63,6 +67,7 @@ class Session(QObject):
         self.undo = QUndoStack(self)
         self.path: Path | None = None
         self.strength, self.exact, self.tool = 1.0, False, "drag"
+        self._restoring = False
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
 
@@ -74,6 +79,7 @@ class Session(QObject):
         measured.flags.writeable = False
         self.controls = self.original_controls = measured
         self.asked = np.full_like(measured, np.nan)
+        self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
         self.draft: Patch | None = None
         self.selection: tuple[int, int] | None = None
         self.lane = 0
@@ -83,6 +89,38 @@ class Session(QObject):
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
         self.undo.clear()
         self.changed.emit(Change.TAKE)
+
+    def restore(self, contents: Contents, path: Path | None, steps: Iterable[QUndoCommand], state: Replayed) -> None:
+        """Replace everything by what a project holds: its edits as `steps`, which come to `state`."""
+        self.blockSignals(True)
+        self._restoring = True
+        try:
+            self.open(contents.original, path)
+            for step in steps:
+                self.undo.push(step)
+            self.undo.setIndex(contents.position)
+            self.undo.setClean()
+        finally:
+            self._restoring = False
+            self.blockSignals(False)
+        self.take, self.asked, self.marks = state.take, state.asked, contents.marks
+        measured = bundled_measurer().measure(self.take.weights)
+        measured.flags.writeable = False
+        self.controls = measured
+        self.changed.emit(Change.TAKE)
+
+    def contents(self) -> Contents:
+        """Return all that a project file keeps; a step without an `edit` (one that changed no rows) is no part of it."""
+        edits = [getattr(self.undo.command(index), "edit", None) for index in range(self.undo.count())]
+        undone = sum(edit is not None for edit in edits[self.undo.index() :])
+        kept = tuple(edit for edit in edits if edit is not None)
+        return Contents(self.original, kept, len(kept) - undone, self.marks)
+
+    def set_marks(self, marks: Marks) -> None:
+        """Put other spans, pins, notes, media or another verdict in place."""
+        if marks != self.marks:
+            self.marks = marks
+            self.changed.emit(Change.MARKS)
 
     def _on_clean_changed(self, _: bool) -> None:
         self.changed.emit(Change.SAVED)
@@ -146,6 +184,8 @@ class Session(QObject):
 
     def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array) -> None:
         """Put rows of weights, controls and asked values in place; for commands only."""
+        if self._restoring:
+            return  # what the steps come to is known
         stop = start + len(weights)
         self.take = self.take.with_rows(start, weights)
         self.controls = _with_rows(self.controls, start, controls)

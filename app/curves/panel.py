@@ -16,7 +16,7 @@ from app.curves.tools.base import Tool
 from app.inference import Inference
 from app.session import Change, Session
 from app.theme import GRID, Palette
-from engine.take import Array, runs
+from engine.take import Array
 
 ACTIVE_STRETCH, STRETCH = 24, 10
 WHEEL_STEP = 1.2
@@ -92,14 +92,14 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             (kinds.TAKE | kinds.LANES | kinds.PLAYHEAD | kinds.CURVES | kinds.DRAFT, self._show_playhead),
             (kinds.DRAFT, self.tool.refresh),
             (kinds.TAKE | kinds.TOOL, self._take_up_tool),
-            (kinds.TAKE | kinds.LANES | kinds.TOOL | kinds.VIEW | kinds.SELECTION, self._show_marks),
+            (kinds.TAKE | kinds.LANES | kinds.TOOL | kinds.VIEW | kinds.SELECTION | kinds.MARKS, self._show_marks),
         ):
             if change & cause:
                 step()
 
     def _show_marks(self) -> None:
         self._underlay.selection = self.session.selection
-        self._underlay.spans = [(float(a), float(b)) for a, b in runs(self.session.take.lost)]
+        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.marks.spans]
         self._underlay.update()
         self._playhead.update()
 

@@ -18,6 +18,7 @@ TABLES: dict[str, str] = {
     "regress_edits": "Requests that no face fits: how like a recording the result is (BSBS19 section 5.3)",
     "regress_takes": "The regressor on each recorded take, trained on all others",
     "regress_levers": "What each augmentation and loss term does for the regressor",
+    "spacetime": "Performances carried to a second head and back (SLS12 figures 9, 11)",
 }
 
 

@@ -104,14 +104,15 @@ def test_copy_and_paste_of_a_range(qtbot: QtBot, window: MainWindow) -> None:
 
 def test_smoothing_is_previewed_then_kept_or_dropped(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
+    QTest.keyClick(window, Qt.Key.Key_S)
     session.select((50, 150))
-    window.inspector.cutoff.setValue(2.0)
+    window.smoothing.cutoff.setValue(2.0)
     qtbot.waitUntil(lambda: session.draft is not None, timeout=10_000)
     np.testing.assert_array_equal(session.take.weights, session.original.weights)
-    QTest.mouseClick(window.inspector.drop_button, LEFT)
+    QTest.mouseClick(window.smoothing.drop_button, LEFT)
     assert session.draft is None and session.undo.count() == 0
-    window.inspector.cutoff.setValue(3.0)
-    QTest.mouseClick(window.inspector.smooth_button, LEFT)
+    window.smoothing.cutoff.setValue(3.0)
+    QTest.mouseClick(window.smoothing.keep_button, LEFT)
     qtbot.waitUntil(lambda: session.undo.count() == 1, timeout=10_000)
     rough = np.abs(np.diff(session.original.weights[60:140], n=2, axis=0)).sum()
     assert np.abs(np.diff(session.take.weights[60:140], n=2, axis=0)).sum() < 0.6 * rough
@@ -122,10 +123,10 @@ def test_smoothing_is_previewed_then_kept_or_dropped(qtbot: QtBot, window: MainW
 def test_a_typed_value_is_reached(qtbot: QtBot, window: MainWindow) -> None:
     window.session.move_playhead(160)
     window.session.set_brush(exact=True)
-    window.inspector.value.setFocus()
-    window.inspector.value.selectAll()
-    QTest.keyClicks(window.inspector.value, "7.5")
-    QTest.keyClick(window.inspector.value, Qt.Key.Key_Return)
+    window.value.value.setFocus()
+    window.value.value.selectAll()
+    QTest.keyClicks(window.value.value, "7.5")
+    QTest.keyClick(window.value.value, Qt.Key.Key_Return)
     qtbot.waitUntil(lambda: window.session.undo.count() == 1, timeout=10_000)
     assert abs(window.session.controls[160, LIPS] - 7.5) < 0.1
     assert CURVES[LIPS].title in window.session.undo.undoText()

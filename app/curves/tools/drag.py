@@ -28,7 +28,7 @@ class DragTool(Tool):
         """Take hold of the curve at the frame under the pointer."""
         session = self.panel.session
         frame = round(self.panel.frame_at(event.position()))
-        if not 0 <= frame < len(session.take) or self.panel.inference.busy:
+        if not 0 <= frame < len(session.take) or self.panel.inference.busy or session.draft is not None:
             return
         self._lane, self._centre, self._from, self._by = lane, frame, event.position(), 0.0
         session.move_playhead(frame)
