@@ -61,7 +61,7 @@ RECIPES = {
     "lower": Recipe((32, 64, 128), (40, 16), (1e-3, 1.5e-3), Levers(copies=3)),
     "upper": Recipe((16, 32, 64), (10, 16), (1e-3, 2e-3), _PEOPLE),
     # the synthetic performer's lids mislead: without them the error on a person left out is a third (regress_levers)
-    "eyelids": Recipe((16, 32, 64), (10, 16), (1e-3, 2e-3), _PEOPLE, synthetic_minutes=0.0),
+    "eyelids": Recipe((16, 32, 64), (24, 16), (2e-3, 2e-3), _PEOPLE, synthetic_minutes=0.0),
 }
 
 
