@@ -16,8 +16,8 @@ from engine.regress.train import Recipe, Settings, train
 ALL = (*AREAS, *EXTENDED_AREAS)
 
 LEVERS = Levers(copies=1)
-RECIPES = {area.name: Recipe((4, 4, 4), (2, 2), levers=LEVERS) for area in ALL}
-TINY = Settings(window=32, recipes=RECIPES, synthetic_minutes=0.0)
+RECIPES = {area.name: Recipe((4, 4, 4), (2, 2), levers=LEVERS, synthetic_minutes=0.0) for area in ALL}
+TINY = Settings(window=32, recipes=RECIPES)
 
 
 @pytest.fixture
