@@ -31,8 +31,9 @@ class Action:
 
 ACTIONS: tuple[Action, ...] = (
     Action("open_take", "Open…", "File", ("Ctrl+O",), "Open", twin="retake FILE"),
-    Action("save", "Save", "File", ("Ctrl+S",), "Save", twin="retake edit -o"),
-    Action("save_as", "Save as…", "File", ("Ctrl+Shift+S",), twin="retake edit -o"),
+    Action("save", "Save project", "File", ("Ctrl+S",), "Save", twin="commands read projects and write takes"),
+    Action("save_as", "Save project as…", "File", ("Ctrl+Shift+S",), twin="commands read projects and write takes"),
+    Action("export", "Export take…", "File", ("Ctrl+E",), "Export", twin="retake edit -o"),
     Action("close", "Quit", "File", ("Ctrl+Q",), twin="ends the program"),
     Action("undo", "Undo", "Edit", ("Ctrl+Z",), "↶", twin="a command writes a new file; the old one stays"),
     Action("redo", "Redo", "Edit", ("Ctrl+Shift+Z", "Ctrl+Y"), "↷", twin="a command writes a new file"),
@@ -76,7 +77,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("about", "About Retake", "Help", (), twin="retake --version"),
 )
 TOOLBAR: tuple[tuple[str, ...], ...] = (
-    ("open_take", "save"),
+    ("open_take", "save", "export"),
     ("undo", "redo"),
     ("drag_tool", "draw_tool", "scale_tool", "pin_tool", "mark_tool"),
     ("fill", "clean_tool"),
