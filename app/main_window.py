@@ -29,7 +29,10 @@ from app.curves.panel import CurvesPanel
 from app.inference import Inference
 from app.inspector.panel import Inspector
 from app.notices import Notices
+from app.playback import media, video
+from app.playback.media import Media
 from app.preview.panel import PreviewPanel
+from app.preview.reference import ReferencePanel
 from app.session import Change, Session
 from app.settings import Settings
 from app.theme import GRID
@@ -60,8 +63,10 @@ class MainWindow(QMainWindow):
         self.session = Session(take)
         self.inference = Inference(self.session)
         self.transport = Transport(self.session)
+        self.media = Media(self.session, self.transport)
         self.notices = Notices()
         self.preview = PreviewPanel(self.session, self.inference)
+        self.reference = ReferencePanel(self.session)
         self.curves = CurvesPanel(self.session, self.inference, self.colours)
         self.timeline = Timeline(self.session, self.colours, gutter_px=GUTTER_PX)
         self.inspector = Inspector(self.session)
@@ -128,6 +133,7 @@ class MainWindow(QMainWindow):
         return bar
 
     def _lay_out(self) -> None:
+        self.preview.add_beneath(self.reference)
         lanes = QFrame()
         lanes.setProperty("panel", True)
         stack = QVBoxLayout(lanes)
@@ -181,7 +187,8 @@ class MainWindow(QMainWindow):
         self.session.changed.connect(self._on_change)
         self.inference.failed.connect(self.notices.tell)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        self.preview.failed.connect(self.notices.tell)
+        for part in (self.preview, self.media, self.reference):
+            part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self._timed)
         self.transport.changed.connect(self._show_transport)
         self.inspector.close_here.connect(self.close_here)
@@ -240,6 +247,20 @@ class MainWindow(QMainWindow):
         if name:
             self.load(Path(name))
 
+    def attach_audio(self) -> None:
+        """Choose a recording to play along with the take."""
+        kinds = " ".join(f"*{ending}" for ending in media.ENDINGS)
+        name, _ = QFileDialog.getOpenFileName(self, "Attach sound", "", f"Sound ({kinds})")
+        if name:
+            self.media.attach(Path(name))
+
+    def attach_video(self) -> None:
+        """Choose a video to watch beneath the face."""
+        kinds = " ".join(f"*{ending}" for ending in video.ENDINGS)
+        name, _ = QFileDialog.getOpenFileName(self, "Attach a reference video", "", f"Videos ({kinds})")
+        if name:
+            self.session.attach_video(Path(name))
+
     def save(self) -> bool:
         """Write to the file it was saved to before; the recording itself is never overwritten unasked."""
         if self._saved_view and self.session.path is not None:
@@ -282,7 +303,11 @@ class MainWindow(QMainWindow):
     def dropEvent(self, event: QDropEvent) -> None:
         """Open the first file that was dropped."""
         paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
-        if paths:
+        if paths and paths[0].suffix.lower() in media.ENDINGS:
+            self.media.attach(paths[0])
+        elif paths and paths[0].suffix.lower() in video.ENDINGS:
+            self.session.attach_video(paths[0])
+        elif paths:
             self.load(paths[0])
 
     def closeEvent(self, event: QCloseEvent) -> None:
@@ -301,6 +326,8 @@ class MainWindow(QMainWindow):
         self.transport.run(0.0)
         self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
         self.inference.close()
+        self.media.close()
+        self.reference.close_reader()
         self.preview.close_renderer()
 
     # --- editing
@@ -375,6 +402,10 @@ class MainWindow(QMainWindow):
     def loop(self) -> None:
         """Begin again at the end, or stop there."""
         self.transport.set_loop(self.actions_by_name["loop"].isChecked())
+
+    def mute(self) -> None:
+        """Play with or without sound."""
+        self.media.mute(self.actions_by_name["mute"].isChecked())
 
     def next_frame(self) -> None:
         """Go one frame on."""

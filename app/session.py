@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoStack
 
 from engine.controls import CONTROLS, bundled_measurer
+from engine.formats.audio import Audio
 from engine.take import Array, Take
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ class Change(Flag):
     LANE = auto()  # the lane that is worked on
     TOOL = auto()
     SAVED = auto()
+    MEDIA = auto()  # sound or reference video
 
 
 class Session(QObject):
@@ -50,6 +52,8 @@ class Session(QObject):
     selection : half-open range of frames, or None
     lane : column of the control that is worked on
     radius_frames, strength, exact : the Drag tool's brush
+    audio, audio_offset_s : the recording of the sound, and the time in the take at which it begins
+    video, video_offset_s : the file of the reference video, likewise
     """
 
     changed = Signal(object)
@@ -76,6 +80,9 @@ class Session(QObject):
         self.radius_frames = max(2, round(BRUSH_S * take.fps))
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
+        self.audio: Audio | None = None
+        self.video: Path | None = None
+        self.audio_offset_s = self.video_offset_s = 0.0
         self.undo.clear()
         self.changed.emit(Change.TAKE)
 
@@ -155,6 +162,16 @@ class Session(QObject):
         if frames != self.selection:
             self.selection = frames
             self.changed.emit(Change.SELECTION)
+
+    def attach_audio(self, audio: Audio | None, offset_s: float = 0.0) -> None:
+        """Play a recording along with the take, or none."""
+        self.audio, self.audio_offset_s = audio, offset_s
+        self.changed.emit(Change.MEDIA)
+
+    def attach_video(self, path: Path | None, offset_s: float = 0.0) -> None:
+        """Show a reference video beside the face, or none."""
+        self.video, self.video_offset_s = path, offset_s
+        self.changed.emit(Change.MEDIA)
 
     def choose_lane(self, lane: int) -> None:
         """Work on another control."""

@@ -1,4 +1,4 @@
-"""The ruler and the spans lane above the curves, and the scroll bar beneath them."""
+"""The ruler, the waveform and the spans lane above the curves, and the scroll bar beneath them."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
 
 from app.session import Change, Session
 from app.theme import GRID, Palette
+from app.timeline.waveform import draw_waveform
 from engine.take import runs, timecode
 
-RULER_PX, SPANS_PX, LABEL_PX = 26, 22, 76
+RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 34, 22, 76
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 
 
@@ -40,13 +41,18 @@ class Timeline(QWidget):
 
     def sizeHint(self) -> QSize:
         """As high as its lanes."""
-        return QSize(400, RULER_PX + SPANS_PX)
+        return QSize(400, self._spans_top() + SPANS_PX)
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.VIEW | Change.PLAYHEAD | Change.SELECTION):
+        if change & (Change.TAKE | Change.MEDIA):
+            self.updateGeometry()
+        if change & (Change.TAKE | Change.MEDIA | Change.VIEW | Change.PLAYHEAD | Change.SELECTION):
             self.update()
 
     # --- geometry
+
+    def _spans_top(self) -> int:
+        return RULER_PX + (AUDIO_PX if self._session.audio is not None else 0)
 
     def _span_px(self) -> float:
         return max(1.0, self.width() - self._gutter - GRID)
@@ -64,14 +70,17 @@ class Timeline(QWidget):
     # --- drawing
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw ruler, spans, selection and playhead."""
+        """Draw ruler, waveform, spans, selection and playhead."""
         painter = QPainter(self)
         painter.setPen(QColor(self._colours.quiet))
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-        painter.drawText(QRectF(GRID, RULER_PX, self._gutter, SPANS_PX), left, "spans")
+        painter.drawText(QRectF(GRID, self._spans_top(), self._gutter, SPANS_PX), left, "spans")
+        if self._session.audio is not None:
+            painter.drawText(QRectF(GRID, RULER_PX, self._gutter, AUDIO_PX), left, "audio")
         painter.setClipRect(QRectF(self._gutter, 0, self._span_px(), self.height()))
         self._draw_selection(painter)
         self._draw_ticks(painter)
+        self._draw_audio(painter)
         self._draw_spans(painter)
         x = self.x_of(self._session.playhead)
         painter.setPen(QPen(QColor(self._colours.text), 1))
@@ -107,6 +116,13 @@ class Timeline(QWidget):
             painter.drawLine(int(x), 20, int(x), RULER_PX)
             index += 1
 
+    def _draw_audio(self, painter: QPainter) -> None:
+        session = self._session
+        if session.audio is not None:
+            first_s, last_s = (frame / session.take.fps - session.audio_offset_s for frame in session.view)
+            box = QRectF(self._gutter, RULER_PX + 2, self._span_px(), AUDIO_PX - 4)
+            draw_waveform(painter, session.audio, box, (first_s, last_s), self._colours.quiet)
+
     def _draw_spans(self, painter: QPainter) -> None:
         warning = QColor(self._colours.warning)
         tint = QColor(warning)
@@ -115,7 +131,7 @@ class Timeline(QWidget):
             left, right = self.x_of(start - 0.5), self.x_of(stop - 0.5)
             if right < self._gutter or left > self.width():
                 continue
-            box = QRectF(left, RULER_PX + 3, max(3.0, right - left), SPANS_PX - 7)
+            box = QRectF(left, self._spans_top() + 3, max(3.0, right - left), SPANS_PX - 7)
             painter.fillRect(box, tint)
             painter.fillRect(box, QBrush(warning, Qt.BrushStyle.BDiagPattern))
             painter.setPen(QPen(warning, 1))
@@ -137,7 +153,7 @@ class Timeline(QWidget):
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             self._selecting = frame
             return
-        if event.position().y() > RULER_PX:
+        if event.position().y() > self._spans_top():
             hit = [span for span in runs(self._session.take.lost) if span[0] <= frame < span[1]]
             self._session.select(hit[0] if hit else None)
         self._session.move_playhead(frame)
