@@ -44,14 +44,14 @@ class Source:
         self._loop: Loop | None = None  # samples
         self._running = False
         self._gain = 0.0
-        self._grains: list[tuple[float, int]] = []  # place in the recording, samples already played
+        self._grains: list[tuple[float, int]] = []  # place in the recording, samples already played; negative: to wait
         self._next_grain: float | None = None
         self._blocks: deque[tuple[float, float, float]] = deque(maxlen=BLOCKS_REMEMBERED)  # heard from, until; place
 
     @property
     def idle(self) -> bool:
         """Whether there is nothing to play."""
-        return not (self._running or self._gain or self._grains)
+        return not (self._running or self._gain or self._grains or self._next_grain is not None)
 
     def play(self, at_s: float, speed: float, loop: Loop | None) -> None:
         """Move from a time in the take at a speed; nothing that was heard before counts for `heard`."""
@@ -71,7 +71,6 @@ class Source:
         """Play a grain, after the one that runs is half over: halves of two grains add up to an even loudness."""
         with self._lock:
             self._next_grain = self._place(at_s) - GRAIN_S / 2 * self._rate
-            self._start_grain()
 
     def heard(self, now: float) -> tuple[float | None, float]:
         """Return the time in the take that is heard now, None before the first block; and until when there is sound."""
@@ -91,6 +90,7 @@ class Source:
                 self._blocks.append((heard_from, heard_from + frames / self._out_rate, self._at))
             if self._running or self._gain:
                 block += self._fade(frames)[:, None] * self._moving(frames)
+            self._start_grain(frames)
             if self._grains:
                 block += self._grainy(frames)
             return block
@@ -125,19 +125,24 @@ class Source:
         self._gain = float(gains[-1])
         return gains
 
-    def _start_grain(self) -> None:
-        half = GRAIN_S / 2 * self._out_rate
-        if self._next_grain is not None and all(played >= half for _, played in self._grains):
-            self._grains.append((self._next_grain, 0))
+    def _start_grain(self, frames: int) -> None:
+        """Let the waiting grain begin in this block, if the one before is half over by then."""
+        if self._next_grain is None:
+            return
+        wait = max(0, self._half_grain() - self._grains[-1][1]) if self._grains else 0
+        if wait < frames:
+            self._grains.append((self._next_grain, -wait))
             self._next_grain = None
 
+    def _half_grain(self) -> int:
+        return round(GRAIN_S / 2 * self._out_rate)
+
     def _grainy(self, frames: int) -> Samples:
-        length = round(GRAIN_S * self._out_rate)
+        length = 2 * self._half_grain()
         block = np.zeros((frames, self._samples.shape[1]), np.float32)
         for place, played in self._grains:
             age = np.arange(played, played + frames)
-            window = np.where(age < length, 0.5 - 0.5 * np.cos(2 * np.pi * age / length), 0.0)
+            window = np.where((age >= 0) & (age < length), 0.5 - 0.5 * np.cos(2 * np.pi * age / length), 0.0)
             block += window.astype(np.float32)[:, None] * self._interpolated(place + age * self._rate / self._out_rate)
         self._grains = [(place, played + frames) for place, played in self._grains if played + frames < length]
-        self._start_grain()
         return np.zeros_like(block) if self.muted else block

@@ -73,6 +73,7 @@ class Video:
         self._begin = self._stream.start_time or 0
         self._ahead: Iterator[av.VideoFrame] | None = None
         self._next: tuple[float, Picture] | None = None  # decoded, but until when it lasts is not known yet
+        self._end_s = math.inf  # until it is known
         self._starts: list[float] = []
         self._frames: list[Frame] = []
 
@@ -82,7 +83,7 @@ class Video:
 
     def frame_at(self, time_s: float) -> Frame | None:
         """Return the frame that is shown at a time, None before the first and after the last."""
-        if time_s < 0 or not math.isfinite(time_s):
+        if not 0 <= time_s < self._end_s:
             return None
         found = self._kept(time_s)
         try:
@@ -113,6 +114,7 @@ class Video:
         for _ in range(MAX_DECODED):
             frame = self._step()
             if frame is None:
+                self._end_s = time_s
                 return None
             self._keep(frame, time_s)
             if frame.stop_s > time_s:
@@ -120,10 +122,14 @@ class Video:
         raise FormatError(f"{self.path.name} is damaged at {time_s:.1f} s.", "Export the video again.")
 
     def _seek(self, time_s: float) -> None:
-        """Go to the last key frame before a time."""
-        self._file.seek(self._begin + int(time_s / self._stream.time_base), stream=self._stream, backward=True)
-        self._ahead = self._file.decode(self._stream)
-        self._next = self._read()
+        """Go to a key frame before a time: where pictures are stored out of order the first found may lie after it."""
+        for earlier_s in (0.0, 1.0, 10.0, math.inf):
+            back = max(0, int((time_s - earlier_s) / self._stream.time_base)) if earlier_s < time_s else 0
+            self._file.seek(self._begin + back, stream=self._stream, backward=True)
+            self._ahead = self._file.decode(self._stream)
+            self._next = self._read()
+            if self._next is not None and self._next[0] <= time_s:
+                return
 
     def _step(self) -> Frame | None:
         """Return the next frame with its end, which is where the one after it begins."""
