@@ -71,7 +71,7 @@ class DeviceSink:
         if not 0.0 < waits_s < BELIEVABLE_S:  # some drivers do not tell
             waits_s = self._stream.latency
         if status:
-            log.warning("sound: %s", status)
+            log.debug("sound: %s", status)  # told by the driver after the fact; nothing can be done
         with self._lock:
             block = self._pull(frames, time.perf_counter() + waits_s) if self._pull else None
             if block is None:

@@ -11,7 +11,7 @@ from app.theme import GRID, Palette
 from app.timeline.waveform import draw_waveform
 from engine.take import runs, timecode
 
-RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 34, 22, 76
+RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 76
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 
 

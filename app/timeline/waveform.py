@@ -8,11 +8,12 @@ from PySide6.QtGui import QColor, QImage, QPainter
 
 from engine.formats.audio import Audio
 
-PEAK_ALPHA, RMS_ALPHA = 90, 255  # of 255: how much of the colour is laid on
+PEAK_ALPHA, RMS_ALPHA = 110, 255  # of 255: how much of the colour is laid on
+QUIETEST = 0.02  # a recording whose loudest sample is below this is not drawn any larger
 
 
 def draw_waveform(painter: QPainter, audio: Audio, box: QRectF, between_s: tuple[float, float], colour: str) -> None:
-    """Draw a recording's peaks and, brighter inside, its root mean square.
+    """Draw a recording's peaks and, brighter inside, its root mean square; its loudest moment fills the box.
 
     Parameters
     ----------
@@ -22,13 +23,14 @@ def draw_waveform(painter: QPainter, audio: Audio, box: QRectF, between_s: tuple
     """
     first_s, last_s = between_s
     ratio = painter.device().devicePixelRatio()
-    columns, rows = max(1, round(box.width() * ratio)), max(3, round(box.height() * ratio))
+    columns, rows = max(1, round(box.width() * ratio)), round(box.height() * ratio) | 1  # odd: silence is a line
     peaks = audio.peaks(first_s, last_s, columns)
-    heights = np.linspace(1.0, -1.0, rows, dtype=np.float32)[:, None]
-    half = 1.0 / (rows - 1)  # so that silence is a line
+    full = max(audio.loudest, QUIETEST)
+    heights = np.linspace(full, -full, rows, dtype=np.float32)[:, None]
+    half = full / max(1, rows - 1)
     alpha = np.zeros((rows, len(peaks.low)), np.uint8)
-    alpha[(heights <= peaks.high + half) & (heights >= peaks.low - half)] = PEAK_ALPHA
-    alpha[np.abs(heights) <= peaks.rms + half] = RMS_ALPHA
+    alpha[(heights < peaks.high + half) & (heights > peaks.low - half)] = PEAK_ALPHA
+    alpha[np.abs(heights) < peaks.rms] = RMS_ALPHA
     ends_s = peaks.first_s + peaks.column_s * np.arange(1, alpha.shape[1] + 1)
     alpha[:, (ends_s <= 0) | (ends_s - peaks.column_s >= audio.duration_s)] = 0
     per_s = box.width() / max(last_s - first_s, 1e-9)

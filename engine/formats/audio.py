@@ -94,6 +94,11 @@ class Audio:
         """Length in seconds."""
         return len(self.samples) / self.rate
 
+    @property
+    def loudest(self) -> float:
+        """Return the largest sample without its sign."""
+        return float(max(-self.levels[-1].low.min(), self.levels[-1].high.max()))
+
     def peaks(self, first_s: float, last_s: float, columns: int) -> Peaks:
         """Return lowest, highest and root mean square value of about `columns` columns from `first_s` to `last_s`.
 
