@@ -29,7 +29,7 @@ from app.curves.panel import CurvesPanel
 from app.inference import Inference
 from app.inspector.panel import Inspector
 from app.notices import Notices
-from app.playback import media, video
+from app.playback import media
 from app.playback.media import Media
 from app.preview.panel import PreviewPanel
 from app.preview.reference import ReferencePanel
@@ -249,14 +249,14 @@ class MainWindow(QMainWindow):
 
     def attach_audio(self) -> None:
         """Choose a recording to play along with the take."""
-        kinds = " ".join(f"*{ending}" for ending in media.ENDINGS)
+        kinds = " ".join(f"*{ending}" for ending in media.ENDINGS + media.FILM_ENDINGS)
         name, _ = QFileDialog.getOpenFileName(self, "Attach sound", "", f"Sound ({kinds})")
         if name:
             self.media.attach(Path(name))
 
     def attach_video(self) -> None:
         """Choose a video to watch beneath the face."""
-        kinds = " ".join(f"*{ending}" for ending in video.ENDINGS)
+        kinds = " ".join(f"*{ending}" for ending in media.FILM_ENDINGS)
         name, _ = QFileDialog.getOpenFileName(self, "Attach a reference video", "", f"Videos ({kinds})")
         if name:
             self.session.attach_video(Path(name))
@@ -305,7 +305,7 @@ class MainWindow(QMainWindow):
         paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
         if paths and paths[0].suffix.lower() in media.ENDINGS:
             self.media.attach(paths[0])
-        elif paths and paths[0].suffix.lower() in video.ENDINGS:
+        elif paths and paths[0].suffix.lower() in media.FILM_ENDINGS:
             self.session.attach_video(paths[0])
         elif paths:
             self.load(paths[0])

@@ -9,14 +9,14 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.playback import video
 from app.playback.clock import AudioClock, Sink, WallClock
 from app.playback.device import open_device
 from app.session import Change, Session
 from app.transport import Transport
-from engine.formats import audio
+from engine.formats import audio, film
 
 ENDINGS = audio.ENDINGS
+FILM_ENDINGS = film.ENDINGS
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Media(QObject):
         self._playing: tuple[object, float] = (None, 0.0)
         self.reading = LatestWins(lambda wanted: audio.read(wanted.path), name="sound")
         self.reading.done.connect(self._arrived)
-        self.reading.failed.connect(lambda _, sentence, advice: self.failed.emit(sentence, advice))
+        self.reading.failed.connect(self._refused)
         session.changed.connect(self._on_change)
         self._on_change(Change.TAKE)
 
@@ -76,10 +76,12 @@ class Media(QObject):
             self._choose_clock()
 
     def _look_beside(self, take: Path | None) -> None:
-        found = take and audio.beside(take)
+        if take is None:
+            return
+        filmed = film.beside(take)
+        found = audio.beside(take) or filmed  # phones record the sound with the picture
         if found:
             self.reading.submit(_Wanted(found, take, False))
-        filmed = take and video.beside(take)
         if filmed:
             self._session.attach_video(filmed)
 
@@ -87,6 +89,11 @@ class Media(QObject):
         """Attach what was read, unless its take is closed or has got another sound in the meantime."""
         if wanted.take == self._session.path and (wanted.by_hand or self._session.audio is None):
             self._session.attach_audio(recording, self._session.audio_offset_s)
+
+    def _refused(self, wanted: _Wanted, sentence: str, advice: str) -> None:
+        """Say what is wrong, but not that a film found beside the take is silent."""
+        if wanted.by_hand or wanted.path.suffix.lower() not in film.ENDINGS:
+            self.failed.emit(sentence, advice)
 
     def _choose_clock(self) -> None:
         wanted = self._session.audio, self._session.audio_offset_s

@@ -13,16 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
+from engine.formats.film import EXPECTED, open_film
 
 if TYPE_CHECKING:
     import av
 
 Picture = npt.NDArray[np.uint8]  # (height, width, 3)
 
-ENDINGS = (".mov", ".mp4", ".m4v", ".mkv", ".webm", ".avi")
-# What a file may be inside: none of these sends the reader to another file or address, as play lists do.
-FAMILIES = "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi"
-EXPECTED = "Retake shows MOV, MP4, MKV, WebM and AVI files."
 MAX_PIXELS = 8192 * 4608
 SHOWN_PX = 480  # the longer side of what is kept: the panel is small
 CACHE_BYTES = 96 * 2**20
@@ -40,15 +37,6 @@ class Frame:
     picture: Picture
 
 
-def beside(take: Path) -> Path | None:
-    """Return the video that lies beside a take under its name, or None."""
-    names = {f"{take.stem}{ending}".casefold() for ending in ENDINGS}
-    try:
-        return min((p for p in take.parent.iterdir() if p.name.casefold() in names and p.is_file()), default=None)
-    except OSError:
-        return None
-
-
 class Video:
     """An open file; to be used by one thread only.
 
@@ -60,11 +48,7 @@ class Video:
 
         self.path = path
         self._error = av.FFmpegError
-        options = {"format_whitelist": FAMILIES, "protocol_whitelist": "file"}
-        try:
-            self._file = av.open(f"file:{path.resolve()}", container_options=options)
-        except (av.FFmpegError, OSError, ValueError) as error:
-            raise FormatError(f"{path.name} could not be read as a video.", EXPECTED) from error
+        self._file = open_film(path)
         try:
             self._stream = self._picture_stream()
         except FormatError:

@@ -6,19 +6,21 @@ import os
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
+from engine.formats import film
 
 if TYPE_CHECKING:
     import soundfile
 
 Samples = npt.NDArray[np.float32]
-Bins = tuple[Samples, Samples, Samples]  # lowest, highest, mean square
+Bins = tuple[Samples, Samples, Samples]  # lowest, highest, sum of squares
 
 ENDINGS = (".wav", ".flac", ".ogg")
 FAMILIES = ("WAV", "WAVEX", "RF64", "W64", "FLAC", "OGG")
@@ -53,12 +55,12 @@ class Peaks:
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """Lowest, highest and mean square value of each `bin` samples, (bins,) float32."""
+    """Lowest and highest value and sum of squares of each `bin` samples, (bins,) float32."""
 
     bin: int
     low: Samples
     high: Samples
-    power: Samples
+    energy: Samples
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,21 +113,23 @@ class Audio:
         edges_s = column_s * np.arange(number, number + columns + 2)
         edges = np.clip(np.floor(edges_s * self.rate), 0, len(self.samples)).astype(np.int64)
         fitting = [level for level in self.levels if level.bin <= column_s * self.rate]
-        low, high, power = _summed(fitting[-1], edges) if fitting else _measured(self.samples, edges)
-        return Peaks(edges_s[0], column_s, low, high, np.sqrt(power))
+        low, high, energy = _summed(fitting[-1], edges) if fitting else _measured(self.samples, edges)
+        size = fitting[-1].bin if fitting else 1
+        counts = np.diff(np.minimum(-(-edges // size) * size, len(self.samples)))
+        return Peaks(edges_s[0], column_s, low, high, np.sqrt(energy / np.maximum(counts, 1)).astype(np.float32))
 
 
 def _summed(level: Level, edges: npt.NDArray[np.int64]) -> Bins:
     edges = -(-edges // level.bin)
     first, last = int(edges[0]), int(edges[-1])
-    return _reduced(edges - first, level.low[first:last], level.high[first:last], level.power[first:last])
+    return _reduced(edges - first, level.low[first:last], level.high[first:last], level.energy[first:last])
 
 
 def _measured(samples: Samples, edges: npt.NDArray[np.int64]) -> Bins:
     first = int(edges[0])
     part = samples[first : max(int(edges[-1]), first)]
-    low, high, power = _of_channels(part)
-    return _reduced(edges - first, low, high, power)
+    low, high, energy = _of_channels(part)
+    return _reduced(edges - first, low, high, energy)
 
 
 def _of_channels(part: Samples) -> Bins:
@@ -135,17 +139,17 @@ def _of_channels(part: Samples) -> Bins:
     return np.minimum(left, right), np.maximum(left, right), (np.square(left) + np.square(right)) * np.float32(0.5)
 
 
-def _reduced(edges: npt.NDArray[np.int64], low: Samples, high: Samples, power: Samples) -> Bins:
-    """Return minimum, maximum and mean over the columns between edges, which index the arrays; empty columns are 0."""
+def _reduced(edges: npt.NDArray[np.int64], low: Samples, high: Samples, energy: Samples) -> Bins:
+    """Return minimum, maximum and sum over the columns between edges, which index the arrays; empty columns are 0."""
     counts = np.diff(edges)
-    lowest, highest, mean = np.zeros((3, len(counts)), np.float32)
+    lowest, highest, total = np.zeros((3, len(counts)), np.float32)
     filled = counts > 0
     starts = edges[:-1][filled]
     if len(starts):
         lowest[filled] = np.minimum.reduceat(low, starts)
         highest[filled] = np.maximum.reduceat(high, starts)
-        mean[filled] = np.add.reduceat(power, starts) / counts[filled]
-    return lowest, highest, mean
+        total[filled] = np.add.reduceat(energy, starts)
+    return lowest, highest, total
 
 
 def _finest(part: Samples) -> Bins:
@@ -155,23 +159,23 @@ def _finest(part: Samples) -> Bins:
 
 def _pyramid(parts: list[Bins]) -> tuple[Level, ...]:
     """Return the finest peaks, put together from parts of whole bins, and coarser and coarser ones."""
-    low, high, power = (np.concatenate([part[index] for part in parts]) for index in range(3))
-    levels = [Level(BIN, low, high, power)]
+    low, high, energy = (np.concatenate([part[index] for part in parts]) for index in range(3))
+    levels = [Level(BIN, low, high, energy)]
     while len(levels[-1].low) > GROW:
         finer = levels[-1]
-        levels.append(Level(finer.bin * GROW, *_binned((finer.low, finer.high, finer.power), GROW)))
+        levels.append(Level(finer.bin * GROW, *_binned((finer.low, finer.high, finer.energy), GROW)))
     return tuple(levels)
 
 
 def _binned(values: Bins, size: int) -> Bins:
     count = len(values[0])
     whole = count // size * size
-    low, high, power = (value[:whole].reshape(-1, size) for value in values)
-    bins = low.min(axis=1), high.max(axis=1), power.mean(axis=1)
+    low, high, energy = (value[:whole].reshape(-1, size) for value in values)
+    bins = low.min(axis=1), high.max(axis=1), energy.sum(axis=1)
     if whole == count:
         return bins
-    low, high, power = (value[whole:] for value in values)
-    rest = low.min(), high.max(), power.mean()
+    low, high, energy = (value[whole:] for value in values)
+    rest = low.min(), high.max(), energy.sum()
     return np.append(bins[0], rest[0]), np.append(bins[1], rest[1]), np.append(bins[2], rest[2])
 
 
@@ -189,30 +193,65 @@ def beside(take: Path) -> Path | None:
 
 
 def read(path: Path) -> Audio:
-    """Read a recording; more than two channels are mixed into one.
+    """Read a recording, or the sound of a film; more than two channels are mixed into one.
 
     A long one is decoded a part at a time into a temporary file that goes away by itself, so that memory stays
     bounded. Raises `FormatError` with one plain sentence.
     """
+    ending = path.suffix.lower()
+    if ending not in ENDINGS + film.ENDINGS:
+        raise FormatError(f"{path.name} is not a kind of file that sound can be in.", EXPECTED)
+    store, parts, rate = _Store(), [], 0
+    for given_rate, block in _filmed(path) if ending in film.ENDINGS else _recorded(path):
+        if not np.isfinite(block).all():
+            raise FormatError(f"{path.name} holds samples that are not numbers.", "Export it again as 16 or 24 bit.")
+        rate = given_rate
+        store.add(block, path)
+        parts.append(_finest(block))
+    if not parts:
+        raise FormatError(f"{path.name} holds no sound.", "It may have been cut off; export it again.")
+    return Audio(store.finished(), rate, path, _pyramid(parts))
+
+
+def _recorded(path: Path) -> Iterator[tuple[int, Samples]]:
+    """Yield rate and decoded parts until the file really ends, whatever length its header gives."""
     import soundfile
 
-    if path.suffix.lower() not in ENDINGS:
-        raise FormatError(f"{path.name} is not a kind of file that sound can be in.", EXPECTED)
     try:
         with soundfile.SoundFile(os.fspath(path)) as file:
             _require_playable(file, path)
-            store, parts = _Store(file.channels if file.channels <= STEREO else 1), []
-            for block in _blocks(file, path):
-                store.add(block, path)
-                parts.append(_finest(block))
-            samples, rate = store.finished(), int(file.samplerate)
+            while len(block := file.read(BLOCK, dtype="float32", always_2d=True)):
+                yield file.samplerate, _narrowed(block)
     except (soundfile.SoundFileError, RuntimeError, TypeError, ValueError) as error:
         raise FormatError(f"{path.name} could not be read as sound.", EXPECTED) from error
     except OSError as error:
         raise FormatError(f"{path.name} could not be read: {(error.strerror or str(error)).lower()}.") from error
-    if not len(samples):
-        raise FormatError(f"{path.name} holds no sound.", "It may have been cut off; export it again.")
-    return Audio(samples, rate, path, _pyramid(parts))
+
+
+def _filmed(path: Path) -> Iterator[tuple[int, Samples]]:
+    """Yield rate and decoded parts of a film's first sound track."""
+    import av
+
+    with film.open_film(path) as file:
+        if not file.streams.audio:
+            raise FormatError(f"{path.name} has no sound.", EXPECTED)
+        track = file.streams.audio[0]
+        if not MIN_RATE <= track.rate <= MAX_RATE:
+            raise FormatError(f"{path.name} gives its rate as {track.rate:,} Hz, which cannot be played.", EXPECTED)
+        layout = "stereo" if track.channels == STEREO else "mono"
+        evened = av.AudioResampler("flt", layout, track.rate, frame_size=BLOCK)
+        try:
+            for frame in chain(file.decode(track), [None]):
+                for part in evened.resample(frame):
+                    samples = part.to_ndarray().astype(np.float32, copy=False)
+                    yield track.rate, _narrowed(samples.reshape(-1, part.layout.nb_channels))
+        except (av.FFmpegError, ValueError) as error:
+            raise FormatError(f"The sound of {path.name} is damaged.", "Export the video again.") from error
+
+
+def _narrowed(block: Samples) -> Samples:
+    """Return (n, channels) as (n,) or (n, 2)."""
+    return block[:, 0] if block.shape[1] == 1 else block if block.shape[1] == STEREO else block.mean(axis=1)
 
 
 def _require_playable(file: soundfile.SoundFile, path: Path) -> None:
@@ -224,23 +263,11 @@ def _require_playable(file: soundfile.SoundFile, path: Path) -> None:
         raise FormatError(f"{path.name} has {file.channels} channels.", "Export it as mono or stereo.")
 
 
-def _blocks(file: soundfile.SoundFile, path: Path) -> Iterator[Samples]:
-    """Yield decoded parts until the file really ends, whatever length its header gives."""
-    while len(block := file.read(BLOCK, dtype="float32", always_2d=True)):
-        if not np.isfinite(block).all():
-            raise FormatError(f"{path.name} holds samples that are not numbers.", "Export it again as 16 or 24 bit.")
-        yield block[:, 0] if block.shape[1] == 1 else block if block.shape[1] == STEREO else block.mean(axis=1)
-
-
-class _Growing(Protocol):
-    def write(self, data: bytes, /) -> object: ...
-
-
 class _Store:
     """Samples as they come: in memory while they are few, then in a temporary file without a name."""
 
-    def __init__(self, channels: int) -> None:
-        self._channels, self._count = channels, 0
+    def __init__(self) -> None:
+        self._count, self._channels = 0, 1
         # a large file had better not lie where some systems keep /tmp, in memory
         folder = "/var/tmp" if os.path.isdir("/var/tmp") else None
         self._file = tempfile.SpooledTemporaryFile(max_size=4 * IN_MEMORY_SAMPLES, dir=folder)  # noqa: SIM115
@@ -248,6 +275,7 @@ class _Store:
     def add(self, block: Samples, path: Path) -> None:
         """Append a part, (n,) or (n, 2)."""
         self._count += block.size
+        self._channels = block.shape[1] if block.ndim > 1 else 1
         if self._count > MAX_SAMPLES:
             raise FormatError(f"{path.name} is longer than Retake plays.", "Cut out the part that belongs to the take.")
         self._file.write(np.ascontiguousarray(block).data)

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from app.playback import video
-from app.playback.video import Video, beside
+from app.playback.video import Video
 from engine.errors import FormatError
-from tests.app.playback.films import film, shade, sound_only
+from engine.formats.film import beside
+from tests.films import film, shade, sound_only
 
 STEADY_MS = [round(1000 * n / 30) for n in range(90)]
 # as phones film: 30 Hz that drops to 12 and halts for a second

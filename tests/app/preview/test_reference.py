@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 from app.preview.reference import ReferencePanel
 from app.session import Session
 from engine.take import SHAPES, Take
-from tests.app.playback.films import film, shade, sound_only
+from tests.films import film, shade, sound_only
 
 
 @pytest.fixture

@@ -31,12 +31,15 @@ def film(path: Path, times_ms: Sequence[int], *, size: tuple[int, int] = (64, 48
     return path
 
 
-def sound_only(path: Path) -> Path:
+def sound_only(path: Path, samples: np.ndarray | None = None, rate: int = 48_000) -> Path:
+    """Write sound, (n,), as AAC without a picture."""
+    samples = np.zeros(1024, np.float32) if samples is None else samples
     with av.open(str(path), "w") as file:
-        stream = file.add_stream("aac", rate=48_000)
-        frame = av.AudioFrame.from_ndarray(np.zeros((1, 1024), np.float32), format="fltp", layout="mono")
-        frame.sample_rate = 48_000
-        frame.pts = 0
-        file.mux(stream.encode(frame))
+        stream = file.add_stream("aac", rate=rate, layout="mono")
+        stream.bit_rate = 192_000
+        for at in range(0, len(samples), 1024):
+            frame = av.AudioFrame.from_ndarray(samples[None, at : at + 1024], format="fltp", layout="mono")
+            frame.sample_rate, frame.pts = rate, at
+            file.mux(stream.encode(frame))
         file.mux(stream.encode())
     return path
