@@ -94,8 +94,7 @@ class AudioClock:
         self._sink, self._time_s = sink, time_s
         self._source = Source(audio, offset_s=offset_s, out_rate=sink.rate)
         self._wall = WallClock(time_s)
-        self._at_s = self._speed = self._idle_s = 0.0
-        self._since_s = 0.0
+        self._at_s = self._speed = self._idle_s = self._since_s = 0.0
         self._loop: Loop | None = None
         self._deaf = False  # nothing is heard: the wall tells the time until the next `play`
 
@@ -110,9 +109,10 @@ class AudioClock:
 
     def play(self, at_s: float, speed: float, loop: Loop | None) -> None:
         """Run from a time; backwards where the speed is negative, higher or lower where it is not 1."""
-        self._at_s, self._speed, self._loop, self._since_s = at_s, speed, loop, self._time_s()
+        self._at_s, self._speed, self._loop = at_s, speed, loop
         self._source.play(at_s, speed, loop)
         self._deaf = bool(speed) and not self._sink.start(self._pull)
+        self._since_s = self._time_s()
         if self._deaf:
             self._wall.play(at_s, speed, loop)
 

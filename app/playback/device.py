@@ -18,10 +18,10 @@ BELIEVABLE_S = 2.0
 def open_device(rate: int, channels: int) -> Sink | None:
     """Return the system's loudspeaker, or None where there is none, or no PortAudio."""
     try:
-        import sounddevice  # OSError without the PortAudio library
+        import sounddevice  # itself an OSError where PortAudio is not installed
 
         own = int(sounddevice.query_devices(kind="output")["default_samplerate"])
-    except Exception as error:
+    except Exception as error:  # whatever the reason, editing goes on in silence
         log.info("no sound: %s", error)
         return None
     for candidate in dict.fromkeys((rate, own)):
