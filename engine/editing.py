@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
+import torch
 
 from engine import exact
 from engine.controls import CONTROLS, bundled_measurer, control_index
@@ -47,6 +48,15 @@ class Patch:
     def stop(self) -> int:
         """The frame after the last."""
         return self.start + len(self.weights)
+
+    @classmethod
+    def between(cls, before: Take, after: Take, frames: tuple[int, int]) -> Patch:
+        """Return the patch that turns one take into another over a half-open range; nothing was asked of controls."""
+        rows = np.asarray(after.weights[frames[0] : frames[1]])
+        if before.weights.shape != after.weights.shape:
+            raise EditError(f"The new weights have {len(after)} frames, the take {len(before)}.")
+        reached = bundled_measurer().measure(rows)
+        return cls(frames[0], rows, reached, reached)
 
     def apply(self, take: Take) -> Take:
         """Return the take with these weights in place."""
@@ -194,5 +204,9 @@ def edit_control(
 
 @lru_cache(maxsize=1)
 def warm_up() -> None:
-    """Load the networks and run them once, so that the first drag is as fast as the next."""
+    """Load the networks and run them once, so that the first drag is as fast as the next.
+
+    They are so small that a second thread costs more than it brings, five times as much on a busy machine.
+    """
+    torch.set_num_threads(1)
     infer.bundled().infer(np.tile(bundled_measurer().measure(np.zeros((1, len(SHAPES)))), (64, 1)))

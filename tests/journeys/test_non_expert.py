@@ -115,7 +115,7 @@ def test_escape_drops_the_drag_under_way(qtbot: QtBot, window: MainWindow) -> No
 def test_close_here_shuts_the_lips_on_the_selection(qtbot: QtBot, window: MainWindow) -> None:
     window.session.choose_lane(LIPS)
     window.session.select((70, 90))
-    QTest.mouseClick(window.inspector.close_button, Qt.MouseButton.LeftButton)
+    QTest.mouseClick(window.value.close_button, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: window.session.undo.count() == 1, timeout=10_000)
     assert window.session.controls[70:90, LIPS].max() < 2.0
     assert window.session.undo.undoText() == "close lips apart"
