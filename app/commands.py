@@ -10,7 +10,7 @@ from PySide6.QtGui import QUndoCommand
 
 from app.session import Session
 from engine.controls import bundled_measurer
-from engine.project import Contents, Edit, Marks, Replayed
+from engine.project import MARK, Contents, Edit, Marks, Replayed, mark_edit, marks_of
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -25,6 +25,7 @@ class EditCommand(QUndoCommand):
     session : what is edited
     patch : what the gesture came to
     title : what the user did, as the Undo menu shows it
+    marks : what the session's marks become with it, if anything
     kind, inputs : the verb, and what it was done with, so that a project file can tell and repeat it
     """
 
@@ -36,8 +37,10 @@ class EditCommand(QUndoCommand):
         *,
         kind: str = "drag",
         inputs: Mapping[str, Any] | None = None,
+        marks: Marks | None = None,
     ) -> None:
         super().__init__(title)
+        self._marks = (session.marks, marks) if marks is not None else None
         rows = slice(patch.start, patch.stop)
         self._session, self._start = session, patch.start
         self._before = (session.take.weights[rows].copy(), session.controls[rows].copy(), session.asked[rows].copy())
@@ -52,6 +55,7 @@ class EditCommand(QUndoCommand):
         QUndoCommand.__init__(command, edit.title)
         measure = bundled_measurer().measure
         command._session, command._start, command.edit = session, edit.start, edit
+        command._marks = None
         command._before = (before[0], measure(before[0]), before[1])
         command._after = (edit.weights, measure(edit.weights), edit.asked)
         return command
@@ -59,10 +63,14 @@ class EditCommand(QUndoCommand):
     def redo(self) -> None:
         """Do it, first or again."""
         self._session.replace_rows(self._start, *self._after)
+        if self._marks is not None:
+            self._session.set_marks(self._marks[1])
 
     def undo(self) -> None:
         """Take it back."""
         self._session.replace_rows(self._start, *self._before)
+        if self._marks is not None:
+            self._session.set_marks(self._marks[0])
 
 
 class MarkCommand(QUndoCommand):
@@ -78,6 +86,16 @@ class MarkCommand(QUndoCommand):
     def __init__(self, session: Session, marks: Marks, title: str) -> None:
         super().__init__(title)
         self._session, self._before, self._after = session, session.marks, marks
+        self.edit = mark_edit(title, self._before, marks)
+
+    @classmethod
+    def restored(cls, session: Session, edit: Edit) -> MarkCommand:
+        """Return the command of a stored edit."""
+        command = cls.__new__(cls)
+        QUndoCommand.__init__(command, edit.title)
+        command._session, command.edit = session, edit
+        command._before, command._after = marks_of(edit.inputs["before"]), marks_of(edit.inputs["after"])
+        return command
 
     def redo(self) -> None:
         """Do it, first or again."""
@@ -91,4 +109,5 @@ class MarkCommand(QUndoCommand):
 def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[QUndoCommand]:
     """Yield the commands of a project's edits, oldest first."""
     for edit, before in zip(contents.edits, state.before, strict=True):
-        yield EditCommand.restored(session, edit, before)
+        is_mark = edit.kind == MARK
+        yield MarkCommand.restored(session, edit) if is_mark else EditCommand.restored(session, edit, before)

@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from app.background import LatestWins
 from app.commands import EditCommand
 from app.session import Change, Session
+from engine.project import Marks
 from engine.take import Array, Take
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ class Inference(QObject):
         self._last: Request | None = None
         self._shown: Request | None = None  # whose result is the draft
         self._kind, self._inputs = "drag", dict[str, Any]()
+        self._marks: Marks | None = None
         self._title: str | None = None  # set on release: the step to make of the last request's result
         self.since = 0.0  # when the draft on screen was asked for
         self._work = LatestWins(self._infer, name="inference")
@@ -81,14 +83,21 @@ class Inference(QObject):
         self._last = Request(self._session.take, self._session.controls, verb)
         self._work.submit(self._last)
 
-    def finish(self, title: str, *, kind: str = "drag", inputs: Mapping[str, Any] | None = None) -> None:
+    def finish(
+        self,
+        title: str,
+        *,
+        kind: str = "drag",
+        inputs: Mapping[str, Any] | None = None,
+        marks: Marks | None = None,
+    ) -> None:
         """Make the last asked edit one undo step, as soon as its result is there.
 
-        `kind` and `inputs` are what a project file remembers of it.
+        `kind` and `inputs` are what a project file remembers of it; `marks` is what the session's become with it.
         """
         if self._last is None:
             return
-        self._title, self._kind, self._inputs = title, kind, dict(inputs or {})
+        self._title, self._kind, self._inputs, self._marks = title, kind, dict(inputs or {}), marks
         draft = self._session.draft
         if draft is not None and self._shown is self._last:
             self._commit(draft)
@@ -126,7 +135,9 @@ class Inference(QObject):
 
     def _commit(self, patch: Patch) -> None:
         title, self._title, self._last = self._title, None, None
-        step = EditCommand(self._session, patch, title or "edit", kind=self._kind, inputs=self._inputs)
+        step = EditCommand(
+            self._session, patch, title or "edit", kind=self._kind, inputs=self._inputs, marks=self._marks
+        )
         self._session.undo.push(step)
 
     def _refused(self, request: object, sentence: str, advice: str) -> None:

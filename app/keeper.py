@@ -19,7 +19,7 @@ from app.session import Change, Session
 from app.settings import NAME
 from engine import project
 from engine.errors import EngineError
-from engine.project import Contents, Marks, Project
+from engine.project import Contents, Project
 from engine.take import timecode
 
 log = logging.getLogger(__name__)
@@ -146,24 +146,24 @@ class Keeper(QObject):
     # --- within
 
     def _keep(self, _: int = 0) -> None:
-        session, project = self._session, self._project
-        if self._opening or (project is not None and project.contents.original is not session.original):
+        stored = self._project and self._project.contents
+        if self._opening or (stored and stored.original is not self._session.original):
             return  # another take is being opened
-        contents = session.contents()
-        if project is not None or contents.edits or contents.marks != Marks():
+        if stored and stored.edits and self._session.undo.count() == 0:
+            return  # only opening empties the stack: undoing leaves its steps there
+        contents = self._session.contents()
+        if stored or contents.edits:
             self._work.submit(contents)
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE and not self._opening:
             self._detach(delete=False)
-        elif change & Change.MARKS:
-            self._keep()
+        elif change & Change.MARKS and not self._opening:
+            self._work.submit(self._session.contents())
 
     def _write(self, contents: Contents) -> None:
         """Bring the file to these contents; runs on the keeper's thread."""
         with self._lock:
-            if contents.original is not self._session.original:
-                return
             if self._project is None:
                 self._project = project.create(self._new_path(), contents)
             else:
@@ -214,8 +214,10 @@ class Keeper(QObject):
         if self._project is not None and contents.original is self._project.contents.original:
             try:
                 self._project.put(contents)
-            except EngineError:
-                log.exception("the work so far could not be kept; saving all of it anew")
+            except EngineError as error:
+                if path.exists() and path.samefile(self._project.path):
+                    raise
+                log.warning("all of the work is saved anew: %s", error)
             else:
                 return self._project.save_as(path)
         return project.create(path, contents)

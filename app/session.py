@@ -118,10 +118,10 @@ class Session(QObject):
 
     def contents(self) -> Contents:
         """Return all that a project file keeps; a step without an `edit` (one that changed no rows) is no part of it."""
-        steps = [self.undo.command(index) for index in range(self.undo.count())]
-        kept = [(index, step.edit) for index, step in enumerate(steps) if hasattr(step, "edit")]
-        position = sum(index < self.undo.index() for index, _ in kept)
-        return Contents(self.original, tuple(edit for _, edit in kept), position, self.marks)
+        edits = [getattr(self.undo.command(index), "edit", None) for index in range(self.undo.count())]
+        undone = sum(edit is not None for edit in edits[self.undo.index() :])
+        kept = tuple(edit for edit in edits if edit is not None)
+        return Contents(self.original, kept, len(kept) - undone, self.marks)
 
     def set_marks(self, marks: Marks) -> None:
         """Put other spans, pins, notes, media or another verdict in place."""

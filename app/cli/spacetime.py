@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from engine.spacetime.source import Source
 
 
-def pin(  # noqa: PLR0917 - typer tells arguments from options by annotation
+def pin(
     take: Annotated[Path, typer.Argument(help="The take to edit.")],
     frame: Annotated[int, typer.Option(help="The frame the pose is pinned at.")],
     frames: Annotated[
@@ -52,7 +52,7 @@ def pin(  # noqa: PLR0917 - typer tells arguments from options by annotation
     print(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
 
 
-def retarget(  # noqa: PLR0917 - typer tells arguments from options by annotation
+def retarget(
     source: Annotated[Path, typer.Argument(help="A take, or markers in a CSV, TRC or C3D file.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Where the new take is written.")],
     character: Annotated[Path | None, typer.Option(help="The character to move; the bundled head otherwise.")] = None,

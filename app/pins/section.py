@@ -9,7 +9,6 @@ import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt
 from PySide6.QtWidgets import QGridLayout, QLabel, QLineEdit, QPushButton, QSlider, QSpinBox, QWidget
 
-from app.commands import MarkCommand
 from app.inference import Inference
 from app.section import Section, quiet, slider
 from app.session import Change, Session
@@ -17,9 +16,8 @@ from engine.project import Pin
 from engine.take import SHAPE_INDEX, SHAPES
 
 if TYPE_CHECKING:
-    from engine.spacetime.pin import PinSolver
-
     from engine.editing import Dragger, Patch
+    from engine.spacetime.pin import PinSolver
 
 STEPS = 200  # of a weight's slider
 SHOWN = 12
@@ -90,15 +88,11 @@ class PinsSection(Section):
         session, (start, stop) = self.session, self.range
         pin = Pin(self._frame, dict(self._pose), start, stop)
         names = ", ".join(list(self._pose)[:2])
-        self._inference.finish(
-            f"pin {names}",
-            kind="pin",
-            inputs={"frame": self._frame, "weights": self._pose, "range": [start, stop]},
-        )
         others = tuple(other for other in session.marks.pins if other.frame != pin.frame)
         pins = tuple(sorted((*others, pin), key=lambda each: each.frame))
-        session.undo.push(MarkCommand(session, replace(session.marks, pins=pins), f"place the pin at {pin.frame}"))
+        inputs = {"frame": self._frame, "weights": dict(self._pose), "range": [start, stop]}
         self._pose = {}
+        self._inference.finish(f"pin {names}", kind="pin", inputs=inputs, marks=replace(session.marks, pins=pins))
 
     def drop(self) -> None:
         """Let the pose spring back."""
@@ -162,9 +156,8 @@ class PinsSection(Section):
         frame, frames, pose = self._frame, self.range, dict(self._pose)
 
         def verb(dragger: Dragger) -> Patch:
-            from engine.spacetime.pin import PinSolver
-
             from engine.editing import Patch
+            from engine.spacetime.pin import PinSolver
 
             wanted = (dragger.take, frame, frames)
             if self._solver is None or self._solver_for != wanted:

@@ -1,11 +1,26 @@
 """The `.retake` file: a performance, all that was done to it, and what people noted beside it, in one SQLite database."""
 
 from engine.project.media import Found, attach, find
-from engine.project.records import Contents, Edit, Marks, Media, Note, Pin, Replayed, Span, replay
-from engine.project.store import ENDING, InUseError, Project, Summary, create, delete, peek
+from engine.project.records import (
+    MARK,
+    Contents,
+    Edit,
+    Marks,
+    Media,
+    Note,
+    Pin,
+    Replayed,
+    Span,
+    Summary,
+    mark_edit,
+    marks_of,
+    replay,
+)
+from engine.project.store import ENDING, InUseError, Project, create, delete, peek
 
 __all__ = [
     "ENDING",
+    "MARK",
     "Contents",
     "Edit",
     "Found",
@@ -22,6 +37,8 @@ __all__ = [
     "create",
     "delete",
     "find",
+    "mark_edit",
+    "marks_of",
     "peek",
     "replay",
 ]

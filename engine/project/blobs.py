@@ -8,7 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-LEVEL = 1  # recorded curves hardly compress, and an edit should be safe at once
+SAMPLE_BYTES, SAMPLES = 4096, 16
+WORTH_IT = (
+    0.5  # recorded curves shrink by a quarter, at a twentieth of the disk's speed; an edit should be safe at once
+)
 MAX_RATIO = 1032  # no deflate stream can hold more bytes for each of its own
 SLACK_BYTES = 64
 ORDINARY_BYTES = 2**30  # what any project may unpack to; a larger one by the size of its file
@@ -33,9 +36,12 @@ class Budget:
 
 
 def pack(array: npt.NDArray[Any]) -> bytes:
-    """Return an array's values as compressed little-endian bytes."""
-    little = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
-    return zlib.compress(little.tobytes(), LEVEL)
+    """Return an array's values as little-endian bytes in a zlib stream, compressed where that saves half or more."""
+    content = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).reshape(-1).view("u1").data
+    step = max(SAMPLE_BYTES, len(content) // SAMPLES)
+    sample = b"".join(content[at : at + SAMPLE_BYTES] for at in range(0, len(content), step))
+    worth_it = len(zlib.compress(sample, 1)) < WORTH_IT * len(sample)
+    return zlib.compress(content, 1 if worth_it else 0)
 
 
 def unpack(blob: object, shape: tuple[int, ...], dtype: str, budget: Budget) -> npt.NDArray[Any]:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from datetime import datetime
 from typing import Any
 
 import numpy as np
 
 from engine.controls import CONTROLS
-from engine.take import Array, Take
+from engine.take import SHAPES, Array, Take
+
+MARK = "mark"  # kind of an edit whose inputs are marks before and after
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +101,23 @@ class Marks:
     verdict: str = ""
 
 
+def marks_of(stored: Mapping[str, Any]) -> Marks:
+    """Return marks from what `dataclasses.asdict` made of them; raises `KeyError` or `TypeError` for anything else."""
+    return Marks(
+        spans=tuple(Span(**entry) for entry in stored["spans"]),
+        pins=tuple(Pin(**entry) for entry in stored["pins"]),
+        notes=tuple(Note(**entry) for entry in stored["notes"]),
+        media=tuple(Media(**entry) for entry in stored["media"]),
+        verdict=stored["verdict"],
+    )
+
+
+def mark_edit(title: str, before: Marks, after: Marks) -> Edit:
+    """Return the edit that changes marks and no frame."""
+    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
+    return Edit(MARK, title, 0, *rows, {"before": asdict(before), "after": asdict(after)})
+
+
 @dataclass(frozen=True, eq=False)
 class Contents:
     """All that a project holds.
@@ -113,6 +133,17 @@ class Contents:
     edits: tuple[Edit, ...] = ()
     position: int = 0
     marks: Marks = Marks()
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a project is, without reading all of it: the take's name, its length, edits in effect, last change."""
+
+    name: str
+    frames: int
+    fps: float
+    edits: int
+    changed: datetime
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Iterable
+from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
@@ -13,11 +14,12 @@ from engine.controls import CONTROL_INDEX, CONTROLS
 from engine.errors import EngineError
 from engine.formats.livelink import DAY_S, MAX_COLUMNS, Origin
 from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
-from engine.project.records import Contents, Edit, Marks, Media, Note, Pin, Span
+from engine.project.records import MARK, Contents, Edit, Marks, Media, Note, Pin, Span, Summary, marks_of
 from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
 MAX_FRAMES = 1_000_000  # over four hours at 60 fps
 MAX_FPS = 10_000.0
+MAX_WEIGHT = 1e6
 MAX_DECIMALS = 17
 JSON_BYTES = 32  # that a character of JSON may grow to when it is read
 ROTATIONS = 9
@@ -41,6 +43,18 @@ def read_contents(database: sqlite3.Connection, budget: Budget) -> Contents:
         return Contents(take, edits, position, _read_marks(database, verdict, len(take), budget))
     except EngineError as error:
         raise DamagedError(error.sentence.rstrip(".")) from error
+
+
+def read_summary(database: sqlite3.Connection) -> Summary:
+    """Return what a checked file is; raises `DamagedError`."""
+    name, frames, fps = one(database, "SELECT name, frames, fps FROM take")
+    position, changed = one(database, "SELECT position, changed FROM state")
+    _require(1 <= frames <= MAX_FRAMES and 0 < fps <= MAX_FPS, "its length or frame rate is not possible")
+    try:
+        when = datetime.fromisoformat(changed)
+    except ValueError as error:
+        raise DamagedError("the time of its last change is none") from error
+    return Summary(name, frames, fps, position, when if when.tzinfo else when.replace(tzinfo=UTC))
 
 
 def write_edits(database: sqlite3.Connection, first: int, edits: Iterable[Edit]) -> None:
@@ -70,8 +84,9 @@ def write_marks(database: sqlite3.Connection, marks: Marks) -> None:
 
 
 def write_state(database: sqlite3.Connection, contents: Contents) -> None:
-    """Write the place in the undo history, and the verdict."""
-    database.execute("INSERT OR REPLACE INTO state VALUES (1, ?, ?)", (contents.position, contents.marks.verdict))
+    """Write the place in the undo history, the verdict, and that it is so from now on."""
+    row = contents.position, contents.marks.verdict, datetime.now(UTC).isoformat(timespec="seconds")
+    database.execute("INSERT OR REPLACE INTO state VALUES (1, ?, ?, ?)", row)
 
 
 def _write_take(database: sqlite3.Connection, take: Take) -> None:
@@ -136,6 +151,9 @@ def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> It
         _require(bool(np.isfinite(rows).all()), "an edit holds a weight that is not a finite number")
         made_from = _json(inputs, budget)
         _require(isinstance(made_from, dict), "an edit does not say what it was made from")
+        if kind == MARK:
+            for marks in ("before", "after"):
+                _require_sound(_marks_in(made_from, marks), length)
         yield Edit(kind, title, start, rows, _read_asked(asked, _texts(controls, budget), frames, budget), made_from)
 
 
@@ -156,28 +174,53 @@ def _read_marks(database: sqlite3.Connection, verdict: str, length: int, budget:
     def rows(columns: str, table: str) -> list[Any]:
         return database.execute(f"SELECT {columns} FROM {table} ORDER BY place").fetchall()
 
-    spans = tuple(Span(*row) for row in rows("start, stop, region, kind", "spans"))
-    pins = tuple(
-        Pin(frame, _pose(weights, budget), start, stop)
-        for frame, weights, start, stop in rows("frame, weights, start, stop", "pins")
+    marks = Marks(
+        spans=tuple(Span(*row) for row in rows("start, stop, region, kind", "spans")),
+        pins=tuple(
+            Pin(frame, _json(weights, budget), start, stop)
+            for frame, weights, start, stop in rows("frame, weights, start, stop", "pins")
+        ),
+        notes=tuple(Note(*row) for row in rows("frame, author, time, text", "notes")),
+        media=tuple(Media(*row) for row in rows("kind, path, sha256, offset_s", "media")),
+        verdict=verdict,
     )
-    notes = tuple(Note(*row) for row in rows("frame, author, time, text", "notes"))
-    media = tuple(Media(*row) for row in rows("kind, path, sha256, offset_s", "media"))
-    _require(all(0 <= span.start < span.stop <= length for span in spans), "a span is not within the take")
-    within = all(0 <= pin.start <= pin.frame < pin.stop <= length for pin in pins)
-    _require(within, "a pin is not within the take")
-    _require(all(0 <= note.frame < length for note in notes), "a note is not within the take")
-    _require(all(bool(np.isfinite(entry.offset_s)) for entry in media), "an offset is not a finite number")
-    return Marks(spans, pins, notes, media, verdict)
+    _require_sound(marks, length)
+    return marks
 
 
-def _pose(text: str, budget: Budget) -> dict[str, float]:
-    pose = _json(text, budget)
-    _require(isinstance(pose, dict) and set(pose) <= set(SHAPE_INDEX), "a pin holds no pose")
-    values = list(pose.values())
-    sound = all(isinstance(value, float | int) and -1e6 < value < 1e6 for value in values)
-    _require(sound, "a pin holds no pose")
-    return {name: float(value) for name, value in pose.items()}
+def _require_sound(marks: Marks, length: int) -> None:
+    try:
+        spans = all(0 <= span.start < span.stop <= length for span in marks.spans)
+        pins = all(0 <= pin.start <= pin.frame < pin.stop <= length and _is_pose(pin.weights) for pin in marks.pins)
+        notes = all(0 <= note.frame < length for note in marks.notes)
+        media = all(bool(np.isfinite(entry.offset_s)) for entry in marks.media)
+    except TypeError as error:
+        raise DamagedError("a mark is not what it should be") from error
+    _require(spans, "a span is not within the take")
+    _require(pins, "a pin is not within the take, or holds no pose")
+    _require(notes, "a note is not within the take")
+    _require(media, "an offset is not a finite number")
+    frames = [frame for span in marks.spans for frame in (span.start, span.stop)]
+    frames += [frame for pin in marks.pins for frame in (pin.frame, pin.start, pin.stop)]
+    frames += [note.frame for note in marks.notes]
+    _require(all(isinstance(frame, int) for frame in frames), "a mark is not what it should be")
+    texts = [text for span in marks.spans for text in (span.region, span.kind)]
+    texts += [text for note in marks.notes for text in (note.author, note.time, note.text)]
+    texts += [text for entry in marks.media for text in (entry.kind, entry.path, entry.sha256)]
+    _require(all(isinstance(text, str) for text in (*texts, marks.verdict)), "a mark is not what it should be")
+
+
+def _is_pose(pose: object) -> bool:
+    if not isinstance(pose, dict) or not set(pose) <= set(SHAPE_INDEX):
+        return False
+    return all(isinstance(value, float | int) and abs(value) < MAX_WEIGHT for value in pose.values())
+
+
+def _marks_in(inputs: dict[str, Any], name: str) -> Marks:
+    try:
+        return marks_of(inputs[name])
+    except (KeyError, TypeError) as error:
+        raise DamagedError("an edit does not say what it marked") from error
 
 
 def _texts(text: str, budget: Budget) -> tuple[str, ...]:

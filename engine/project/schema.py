@@ -9,6 +9,7 @@ from engine.errors import FormatError
 APPLICATION_ID = 0x52544B45  # RTKE
 VERSION = 2
 NOT_OURS = "Open a .retake file, or a take."
+DAMAGED = "Open an older copy of it, or the take itself."
 MAX_TABLES = 64
 
 _FIRST = {
@@ -50,12 +51,16 @@ _PINS = """CREATE TABLE pins (
   place INTEGER PRIMARY KEY,
   frame INTEGER NOT NULL, weights TEXT NOT NULL, start INTEGER NOT NULL, stop INTEGER NOT NULL
 ) STRICT"""
+_STATE = """CREATE TABLE state (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  position INTEGER NOT NULL, verdict TEXT NOT NULL, changed TEXT NOT NULL
+) STRICT"""
 _MEDIA = """CREATE TABLE media (
   place INTEGER PRIMARY KEY,
   kind TEXT NOT NULL, path TEXT NOT NULL, sha256 TEXT NOT NULL, offset_s REAL NOT NULL
 ) STRICT"""
 
-SCHEMAS: dict[int, dict[str, str]] = {1: _FIRST, 2: {**_FIRST, "pins": _PINS, "media": _MEDIA}}
+SCHEMAS: dict[int, dict[str, str]] = {1: _FIRST, 2: {**_FIRST, "pins": _PINS, "media": _MEDIA, "state": _STATE}}
 # From each version to the next. A table is made anew and never altered, so that its text is that of a new file.
 MIGRATIONS: dict[int, tuple[str, ...]] = {
     1: (
@@ -64,6 +69,10 @@ MIGRATIONS: dict[int, tuple[str, ...]] = {
         _MEDIA,
         "INSERT INTO media SELECT place, kind, path, sha256, 0.0 FROM media_1",
         "DROP TABLE media_1",
+        "ALTER TABLE state RENAME TO state_1",
+        _STATE,
+        "INSERT INTO state SELECT id, position, verdict, strftime('%Y-%m-%dT%H:%M:%SZ', 'now') FROM state_1",
+        "DROP TABLE state_1",
     ),
 }
 
@@ -93,7 +102,7 @@ def check(database: sqlite3.Connection, name: str) -> int:
         raise FormatError(f"{name} holds other tables than a Retake project.", NOT_OURS)
     fault = database.execute("PRAGMA quick_check(1)").fetchone()[0]
     if fault != "ok":
-        raise FormatError(f"{name} is damaged.", "Open an older copy of it, or the take itself.")
+        raise FormatError(f"{name} is damaged.", DAMAGED)
     return version
 
 

@@ -8,15 +8,13 @@ import sqlite3
 import tempfile
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
-from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 from engine.errors import EngineError, FormatError
 from engine.formats.atomic import replacement
 from engine.project import rows, schema
 from engine.project.blobs import Budget, DamagedError
-from engine.project.records import Contents
+from engine.project.records import Contents, Summary
 
 ENDING = ".retake"
 MAX_BLOB_BYTES = 2**29
@@ -25,17 +23,6 @@ BESIDE = ("-wal", "-shm", "-journal")  # what SQLite lays beside a database
 
 class InUseError(EngineError):
     """Another running program, or another window, has the project open."""
-
-
-@dataclass(frozen=True)
-class Summary:
-    """What a project is, without reading all of it: the take's name, its length, edits in effect, last change."""
-
-    name: str
-    frames: int
-    fps: float
-    edits: int
-    changed: datetime
 
 
 class Project:
@@ -154,11 +141,8 @@ def create(path: Path, contents: Contents) -> Project:
 def peek(path: Path) -> Summary:
     """Return what a project is; raises as `Project.open` does."""
     with sentences(path.name), closing(_connect(path, path.name)) as database:
-        schema.check(database, path.name)
-        name, frames, fps = rows.one(database, "SELECT name, frames, fps FROM take")
-        (edits,) = rows.one(database, "SELECT position FROM state")
-    changed = datetime.fromtimestamp(path.stat().st_mtime, UTC)
-    return Summary(name, frames, fps, edits, changed)
+        schema.migrate(database, schema.check(database, path.name))
+        return rows.read_summary(database)
 
 
 def delete(path: Path) -> None:
@@ -175,7 +159,9 @@ def sentences(name: str) -> Iterator[None]:
     try:
         yield
     except DamagedError as error:
-        raise FormatError(f"{name} is damaged: {error}.", "Open an older copy of it, or the take itself.") from error
+        raise FormatError(f"{name} is damaged: {error}.", schema.DAMAGED) from error
+    except UnicodeError as error:
+        raise FormatError(f"{name} is damaged: a text in it cannot be read.", schema.DAMAGED) from error
     except sqlite3.Error as error:
         raise _told(error, name) from error
 
@@ -190,7 +176,7 @@ def _told(error: sqlite3.Error, name: str) -> EngineError:
         return EngineError(f"{name} could not be written: {error}.", "Choose another folder, or make room.")
     if kind.startswith("SQLITE_NOTADB"):
         return FormatError(f"{name} is not a Retake project.", schema.NOT_OURS)
-    return FormatError(f"{name} is damaged.", "Open an older copy of it, or the take itself.")
+    return FormatError(f"{name} is damaged.", schema.DAMAGED)
 
 
 def _connect(path: Path, name: str) -> sqlite3.Connection:
@@ -215,7 +201,9 @@ def _scrap(path: Path) -> sqlite3.Connection:
 def _read(database: sqlite3.Connection, path: Path) -> Contents:
     with sentences(path.name):
         schema.migrate(database, schema.check(database, path.name))
-        return rows.read_contents(database, Budget(path.stat().st_size))
+        log = path.with_name(f"{path.name}-wal")
+        held = path.stat().st_size + (log.stat().st_size if log.exists() else 0)
+        return rows.read_contents(database, Budget(held))
 
 
 def _attach(path: Path, contents: Contents) -> Project:
@@ -242,8 +230,16 @@ def _settle(path: Path) -> None:
 
 
 def _clear_beside(path: Path) -> None:
-    for ending in BESIDE:
-        path.with_name(path.name + ending).unlink(missing_ok=True)
+    try:
+        for ending in BESIDE:
+            path.with_name(path.name + ending).unlink(missing_ok=True)
+    except NotADirectoryError:
+        return
+    except OSError as error:
+        reason = (error.strerror or "unknown reason").lower()
+        raise EngineError(
+            f"{path.name} could not be written: {reason}.", "Choose another folder, or make room."
+        ) from error
 
 
 @contextmanager
