@@ -8,6 +8,8 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.keeper import Keeper
+from app.playback import media
+from app.playback.media import Media
 from app.session import Session
 from app.settings import Settings
 from engine.errors import EngineError
@@ -22,7 +24,7 @@ class FileActions(QObject):
 
     Parameters
     ----------
-    session, keeper : what is open, and what keeps it safe
+    session, keeper, media : what is open, what keeps it safe, and what plays along
     settings : remembers recent files
     window : the parent of the dialogs
     """
@@ -30,9 +32,10 @@ class FileActions(QObject):
     told = Signal(str, str)  # sentence, advice
     opened = Signal()
 
-    def __init__(self, session: Session, keeper: Keeper, settings: Settings, window: QWidget) -> None:
+    def __init__(self, session: Session, keeper: Keeper, media: Media, settings: Settings, window: QWidget) -> None:
         super().__init__()
-        self._session, self._keeper, self._settings, self._window = session, keeper, settings, window
+        self._session, self._keeper, self._media = session, keeper, media
+        self._settings, self._window = settings, window
 
     def load(self, path: Path, *_: object) -> bool:
         """Open a take or a project; what is open stays as it was where the file cannot be read."""
@@ -54,6 +57,16 @@ class FileActions(QObject):
         self._settings.remember(path)
         self.opened.emit()
         return True
+
+    def take_in(self, path: Path) -> None:
+        """Open or attach a file, by its ending."""
+        ending = path.suffix.lower()
+        if ending in media.ENDINGS:
+            self._media.attach(path)
+        elif ending in media.FILM_ENDINGS:
+            self._session.attach_video(path)
+        else:
+            self.load(path)
 
     def open_take(self) -> None:
         """Choose a file to open."""
@@ -91,6 +104,20 @@ class FileActions(QObject):
             return False
         self._settings.remember(path)
         return True
+
+    def attach_audio(self) -> None:
+        """Choose a recording to play along with the take."""
+        kinds = " ".join(f"*{ending}" for ending in media.ENDINGS + media.FILM_ENDINGS)
+        name, _ = QFileDialog.getOpenFileName(self._window, "Attach sound", "", f"Sound ({kinds})")
+        if name:
+            self._media.attach(Path(name))
+
+    def attach_video(self) -> None:
+        """Choose a video to watch beneath the face."""
+        kinds = " ".join(f"*{ending}" for ending in media.FILM_ENDINGS)
+        name, _ = QFileDialog.getOpenFileName(self._window, "Attach a reference video", "", f"Videos ({kinds})")
+        if name:
+            self._session.attach_video(Path(name))
 
     def may_lose_edits(self) -> bool:
         """Ask about edits that are not saved; returns whether one may go on."""

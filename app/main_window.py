@@ -50,7 +50,9 @@ from app.inspector.value import ValueSection
 from app.keeper import Keeper
 from app.notices import Notices
 from app.pins.section import PinsSection
+from app.playback.media import Media
 from app.preview.panel import PreviewPanel
+from app.preview.reference import ReferencePanel
 from app.session import Change, Session
 from app.settings import Settings
 from app.spans.filling import Filling
@@ -87,11 +89,13 @@ class MainWindow(QMainWindow):
         self.colours = theme.LIGHT if self.settings.light else theme.DARK
         self.session = Session(take)
         self.keeper = Keeper(self.session, unsaved)
-        self.files = FileActions(self.session, self.keeper, self.settings, self)
         self.inference = Inference(self.session)
         self.transport = Transport(self.session)
+        self.media = Media(self.session, self.transport)
+        self.files = FileActions(self.session, self.keeper, self.media, self.settings, self)
         self.notices = Notices()
         self.preview = PreviewPanel(self.session, self.inference)
+        self.reference = ReferencePanel(self.session)
         self.curves = CurvesPanel(self.session, self.inference, self.colours)
         self.timeline = Timeline(self.session, self.colours, gutter_px=GUTTER_PX)
         self.filling = Filling(self.session)
@@ -198,6 +202,7 @@ class MainWindow(QMainWindow):
         return bar
 
     def _lay_out(self) -> None:
+        self.preview.add_beneath(self.reference)
         lanes = QFrame()
         lanes.setProperty("panel", True)
         stack = QVBoxLayout(lanes)
@@ -257,7 +262,8 @@ class MainWindow(QMainWindow):
         self.session.changed.connect(self._on_change)
         self.inference.failed.connect(self.notices.tell)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        self.preview.failed.connect(self.notices.tell)
+        for part in (self.preview, self.media, self.reference):
+            part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self._timed)
         self.transport.changed.connect(self._show_transport)
         self.value.close_here.connect(self.edits.close_here)
@@ -318,7 +324,7 @@ class MainWindow(QMainWindow):
         """Open the first file that was dropped."""
         paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
         if paths:
-            self.load(paths[0])
+            self.files.take_in(paths[0])
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask for unsaved edits, then end the threads."""
@@ -337,6 +343,8 @@ class MainWindow(QMainWindow):
         self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
         self.keeper.close()
         self.inference.close()
+        self.media.close()
+        self.reference.close_reader()
         self.filling.close()
         self.preview.close_renderer()
 
@@ -350,6 +358,10 @@ class MainWindow(QMainWindow):
         # Enter belongs to whatever is typed into, unless there is a variant to keep
         self.actions_by_name["accept"].setEnabled(bool(self.filling.variants))
         self.actions_by_name["fill"].setEnabled(not self.filling.busy)
+
+    def mute(self) -> None:
+        """Play with or without sound."""
+        self.media.mute(self.actions_by_name["mute"].isChecked())
 
     def _show_tool(self) -> None:
         for name in TOOLS:
