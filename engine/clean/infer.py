@@ -50,6 +50,7 @@ class Cleaner:
 
         self._config = network.config
         self._enter = stored(network.enter.weight), stored(network.enter.bias)
+        self._restore = stored(network.restore.weight), stored(network.restore.bias)
         self._leave = stored(network.leave.weight), stored(network.leave.bias)
         self._cells = [
             (
@@ -76,7 +77,9 @@ class Cleaner:
         step = np.float32(min(max(step_s, STEP_S[0]), STEP_S[1]))
         frame = believable(seen)
         present = np.float32(frame is not None)
-        innovation = frame - state.weights if frame is not None else np.zeros(_SHAPES, np.float32)
+        innovation = np.zeros(_SHAPES, np.float32)
+        if frame is not None:
+            innovation = frame + self._restore[0] @ frame + self._restore[1] - state.weights
         x = self._enter[0] @ _features(state, innovation, present, step) + self._enter[1]
         hidden, cell = np.empty_like(state.hidden), np.empty_like(state.cell)
         for layer, (matrix, bias) in enumerate(self._cells):
@@ -101,7 +104,7 @@ def believable(seen: npt.ArrayLike | None) -> Floats | None:
 
 
 def _features(state: CleanState, innovation: Floats, present: np.float32, step: np.float32) -> Floats:
-    derivatives = np.arcsinh(np.concatenate([state.velocity, innovation / step]))
+    derivatives = np.arcsinh(np.concatenate([state.velocity, innovation / step]) / 2)
     last = np.array([present, np.log(step * np.float32(MODEL_FPS))], np.float32)
     return np.concatenate([2 * state.weights, derivatives, 4 * innovation, last])
 

@@ -11,7 +11,7 @@ from torch import Tensor, nn
 from engine.take import MODEL_FPS, SHAPES
 
 _SHAPES = len(SHAPES)
-_RATE, _OFFSET = 30.0, 0.1  # per second and in weight: what an output of one stands for
+_RATE, _OFFSET = 60.0, 0.1  # per second and in weight: what an output of one stands for
 
 
 @dataclass(frozen=True)
@@ -19,8 +19,8 @@ class CleanConfig:
     """Width and number of the recurrent layers; `first_rate_per_s` is how eagerly an untrained network follows."""
 
     hidden: int = 128
-    layers: int = 2
-    first_rate_per_s: float = 60.0
+    layers: int = 1
+    first_rate_per_s: float = 200.0
 
 
 class State(NamedTuple):
@@ -46,18 +46,21 @@ class State(NamedTuple):
 class CleanNetwork(nn.Module):
     """Predicts the derivative of the estimate from the estimate, its derivative and the corrective derivative (eq. 1, 2).
 
-    The derivative has three parts: the way to where the tracker's value should have been, at a learned rate, and the
-    face's own motion, which alone is left on a frame that the tracker lost.
+    The input is first restored frame by frame by a linear map, which starts as ridge regression. The derivative has
+    three parts: the way to the restored input and a correction of it, both at a learned rate, and the face's own
+    motion, which alone is left on a frame that the tracker lost.
     """
 
     def __init__(self, config: CleanConfig) -> None:
         super().__init__()
         self.config = config
+        self.restore = nn.Linear(_SHAPES, _SHAPES)
         self.enter = nn.Linear(4 * _SHAPES + 2, config.hidden)
         self.cells = nn.ModuleList(nn.LSTMCell(config.hidden, config.hidden) for _ in range(config.layers))
         self.leave = nn.Linear(config.hidden, 3 * _SHAPES)
-        nn.init.zeros_(self.leave.weight)
-        nn.init.zeros_(self.leave.bias)
+        for layer in (self.restore, self.leave):
+            nn.init.zeros_(layer.weight)
+            nn.init.zeros_(layer.bias)
         with torch.no_grad():
             self.leave.bias[:_SHAPES] = config.first_rate_per_s / _RATE
 
@@ -76,8 +79,9 @@ class CleanNetwork(nn.Module):
         step_s : (batch, 1) time since the frame before, seconds
         dropout : share of each layer's output dropped in training
         """
-        innovation = (seen - state.weights) * present
-        x = self.enter(_features(state, innovation, present, step_s))
+        innovation = (seen + self.restore(seen) - state.weights) * present
+        # What is fed back is looked at, not learnt through: gradients round the loop would grow by 1 / step a frame.
+        x = self.enter(_features(state, innovation, present, step_s).detach())
         hidden, cell = [], []
         for layer, recurrent in enumerate(self.cells):
             h, c = recurrent(x, (state.hidden[layer], state.cell[layer]))
@@ -96,8 +100,8 @@ def _features(state: State, innovation: Tensor, present: Tensor, step_s: Tensor)
     return torch.cat(
         [
             2 * state.weights,
-            torch.asinh(state.velocity),
-            torch.asinh(innovation / step_s),
+            torch.asinh(state.velocity / 2),
+            torch.asinh(innovation / step_s / 2),
             4 * innovation,
             present,
             torch.log(step_s * MODEL_FPS),

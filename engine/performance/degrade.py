@@ -32,7 +32,7 @@ class Faults:
     lost_per_s : how often the face is lost (measured)
     lost_s : lengths of lost runs to draw from, seconds (measured)
     amplitude : smallest share of a motion's size that the tracker reports, drawn per take and part of the face
-        (measured: blink peaks of apfel over those of the cleanest take)
+        (measured: blink peaks of the dirty takes over those of the cleanest one)
     lag_s : time constant of the tracker's own smoothing, drawn from 0 to this (assumed)
     cross_talk : share of a shape's weight that shows on another shape of the same part (assumed)
     """
@@ -45,7 +45,7 @@ class Faults:
     frozen_s: float = 0.1
     lost_per_s: float = 0.08
     lost_s: tuple[float, ...] = (0.1, 0.13, 0.1, 0.2, 0.27, 0.1, 0.27, 0.83, 4.1, 4.3)
-    amplitude: float = 0.6
+    amplitude: float = 0.7
     lag_s: float = 0.012
     cross_talk: float = 0.03
 
