@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from engine.clean.landing import Landing, advance
+from engine.clean.landing import still as no_landing
 from engine.clean.network import _OFFSET, _RATE, CleanNetwork, from_config
 from engine.models.checkpoint import MODELS, load_model
 from engine.take import MODEL_FPS, SHAPES
@@ -34,6 +36,12 @@ class CleanState:
     velocity: Floats
     hidden: Floats
     cell: Floats
+    landing: Landing
+
+    @property
+    def shown(self) -> Floats:
+        """(52,) float32, 0..1: the estimate, or the way back to it after a lost run."""
+        return np.clip(self.weights + self.landing.offset, 0.0, 1.0)
 
 
 class Cleaner:
@@ -64,7 +72,7 @@ class Cleaner:
         """Return the state at rest on a first frame, (52,)."""
         still = np.zeros((self._config.layers, self._config.hidden), np.float32)
         first = np.clip(weights, 0.0, 1.0).astype(np.float32)
-        return CleanState(first, np.zeros(_SHAPES, np.float32), still, still)
+        return CleanState(first, np.zeros(_SHAPES, np.float32), still, still, no_landing(_SHAPES))
 
     def step(self, seen: npt.ArrayLike | None, step_s: float, state: CleanState) -> CleanState:
         """Advance one frame: state in, state out.
@@ -90,7 +98,9 @@ class Cleaner:
         follow = -np.expm1(-step * np.float32(_RATE) * np.logaddexp(np.float32(0), rate)) * present
         moved = state.weights + follow * (innovation + np.float32(_OFFSET) * offset) + step * motion
         weights = np.clip(moved, 0.0, 1.0)
-        return CleanState(weights, (weights - state.weights) / step, hidden, cell)
+        jump = weights - state.weights
+        landing = advance(state.landing, jump, state.velocity, float(step), present=frame is not None)
+        return CleanState(weights, jump / step, hidden, cell, landing)
 
 
 def believable(seen: npt.ArrayLike | None) -> Floats | None:

@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from engine.clean.distances import Distances
+from engine.clean.material import CHANGING, cubic
 from engine.clean.network import CleanConfig, CleanNetwork, State, config_of, run
 from engine.corpus import Piece, split
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
@@ -22,7 +23,7 @@ from engine.performance.degrade import Faults, changing_times, degrade, scaled
 from engine.take import MODEL_FPS, Array
 
 Report = Callable[[str], None]
-RATES_FPS = (24.0, 30.0, 60.0, 120.0, 0.0)  # 0 stands for a rate that changes
+RATES_FPS = (24.0, 30.0, 60.0, 120.0, CHANGING)
 
 
 @dataclass(frozen=True)
@@ -66,17 +67,6 @@ def stream(piece: Array, fps: float, frames: int, rng: np.random.Generator) -> t
     there_and_back = np.concatenate([piece, piece[::-1]])
     at = (times * MODEL_FPS + rng.uniform(0, len(there_and_back))) % (len(there_and_back) - 1)
     return np.clip(cubic(there_and_back, at), 0.0, 1.0), times
-
-
-def cubic(curves: Array, at: Array) -> Array:
-    """Return Catmull-Rom interpolation of curves, (frames, n), at fractional frames: above the model rate, no corners."""
-    before = np.clip(at.astype(np.int64), 0, len(curves) - 2)
-    part = (at - before)[:, None]
-    p0, p1, p2, p3 = (curves[np.clip(before + step, 0, len(curves) - 1)] for step in (-1, 0, 1, 2))
-    slope1, slope2 = (p2 - p0) / 2, (p3 - p1) / 2
-    change = p2 - p1
-    third, second = slope1 + slope2 - 2 * change, 3 * change - 2 * slope1 - slope2
-    return np.asarray(p1 + part * (slope1 + part * (second + part * third)))
 
 
 def make_batch(pieces: list[Array], settings: Settings, rng: np.random.Generator) -> Batch:

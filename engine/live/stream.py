@@ -162,7 +162,7 @@ class Stream:
         self._state = self._advance(arrival)
         self._time_s = arrival.time_s
         self.counts["frames"] += 1
-        clean = (1 - self.strength) * self._raw + self.strength * self._state.weights
+        clean = (1 - self.strength) * self._raw + self.strength * self._state.shown
         latency_ms = (now() - arrived_s) * 1e3
         lost = arrival.weights is None
         return LiveFrame(
