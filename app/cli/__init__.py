@@ -6,10 +6,10 @@ import sys
 
 import typer
 
-from app.cli import tables, takes, training
+from app.cli import clean, tables, takes, training
 from engine.errors import EngineError
 
-FAMILIES = (takes, tables, training)
+FAMILIES = (takes, clean, tables, training)
 
 
 def build() -> typer.Typer:

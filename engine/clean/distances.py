@@ -9,14 +9,16 @@ from engine.character import bundled
 from engine.controls import Control, Measurer
 from engine.take import SHAPE_INDEX
 
-_LIP, _LID = ("lip_inner_upper", "lip_inner_lower"), ("lid_upper", "lid_lower")
-DISTANCES: tuple[Control, ...] = (
-    Control("lips_middle", "lips apart", *_LIP, "lower"),
-    *(Control(f"lips_{side}", "lips apart", *(f"{end}_{side}" for end in _LIP), "lower") for side in ("left", "right")),
-    Control("lips_horizontal", "mouth width", "mouth_right", "mouth_left", "lower"),
-    *(Control(f"lids_{side}", "eye", *(f"{end}_{side}" for end in _LID), "eyelids") for side in ("left", "right")),
-)
 _MM_PER_CM = 10.0
+
+DISTANCES: tuple[Control, ...] = (
+    Control("lips_middle", "lips apart", "lip_inner_upper", "lip_inner_lower", "lower"),
+    Control("lips_left", "lips apart", "lip_inner_upper_left", "lip_inner_lower_left", "lower"),
+    Control("lips_right", "lips apart", "lip_inner_upper_right", "lip_inner_lower_right", "lower"),
+    Control("lips_horizontal", "mouth width", "mouth_right", "mouth_left", "lower"),
+    Control("lids_left", "left eye", "lid_upper_left", "lid_lower_left", "eyelids"),
+    Control("lids_right", "right eye", "lid_upper_right", "lid_lower_right", "eyelids"),
+)
 
 
 class Distances(torch.nn.Module):
@@ -36,5 +38,6 @@ class Distances(torch.nn.Module):
         jaw, close = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
         limited = torch.minimum(weights[..., close], weights[..., jaw].clamp(min=0))
         weights = torch.cat([weights[..., :close], limited[..., None], weights[..., close + 1 :]], dim=-1)
-        vectors = (weights @ self.basis + self.rest).unflatten(-1, (-1, 3))
+        moved = weights @ self.basis + self.rest
+        vectors = moved.reshape(*moved.shape[:-1], -1, 3)
         return torch.sqrt(vectors.square().sum(dim=-1) + 1e-6)

@@ -41,7 +41,8 @@ class CleanState:
     @property
     def shown(self) -> Floats:
         """(52,) float32, 0..1: the estimate, or the way back to it after a lost run."""
-        return np.clip(self.weights + self.landing.offset, 0.0, 1.0)
+        shown: Floats = np.clip(self.weights + self.landing.offset, 0.0, 1.0)
+        return shown
 
 
 class Cleaner:

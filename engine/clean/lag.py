@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from engine.take import Array
 
 _LONGEST_S = 0.2
 _ACTIVE = 0.03  # standard deviation of a weight below which a curve tells nothing of time
-_GRID_FPS = 240.0
+_GRID_FPS = 120.0
 
 
 def lag_ms(late: Array, early: Array, times_s: Array) -> float:
@@ -21,19 +22,24 @@ def lag_ms(late: Array, early: Array, times_s: Array) -> float:
     shifts = round(_LONGEST_S * _GRID_FPS)
     if not len(moving) or len(grid) < 4 * shifts:
         return float("nan")
-    lags = [
-        _peak(*(np.diff(np.interp(grid, times_s, curves[:, shape])) for curves in (late, early)), shifts)
-        for shape in moving
-    ]
-    return float(np.mean(lags)) * 1e3 / _GRID_FPS
+    # A straight line between samples would put corners into both at the same times, and hide the lag.
+    behind, before = (CubicSpline(times_s, curves[:, moving])(grid, 1) for curves in (late, early))
+    likeness = np.array([_likeness(behind, before, shift) for shift in range(-shifts, shifts + 1)])
+    peaks = [_peak(likeness[:, shape]) - shifts for shape in range(len(moving))]
+    return float(np.mean(peaks)) * 1e3 / _GRID_FPS
 
 
-def _peak(late: Array, early: Array, shifts: int) -> float:
-    size = 1 << (2 * len(late)).bit_length()
-    spectrum = np.fft.rfft(late, size) * np.conj(np.fft.rfft(early, size))
-    correlation = np.fft.irfft(spectrum, size)
-    around = np.concatenate([correlation[-shifts:], correlation[: shifts + 1]])
-    best = int(np.clip(np.argmax(around), 1, len(around) - 2))
-    left, middle, right = around[best - 1 : best + 2]
+def _likeness(late: Array, early: Array, shift: int) -> Array:
+    """Return (n,) correlations of curves, (frames, n), with one shifted; over what overlaps, lest zero look best."""
+    count = len(late) - abs(shift)
+    ours, theirs = late[max(0, shift) :][:count], early[max(0, -shift) :][:count]
+    energy = np.sqrt(np.einsum("fs,fs->s", ours, ours) * np.einsum("fs,fs->s", theirs, theirs))
+    return np.asarray(np.einsum("fs,fs->s", ours, theirs) / np.maximum(energy, 1e-12))
+
+
+def _peak(likeness: Array) -> float:
+    """Return where a curve is highest, between its samples by a parabola."""
+    best = int(np.clip(np.argmax(likeness), 1, len(likeness) - 2))
+    left, middle, right = likeness[best - 1 : best + 2]
     bend = left - 2 * middle + right
-    return best - shifts + (0.5 * (left - right) / bend if bend else 0.0)
+    return best + (0.5 * (left - right) / bend if bend else 0.0)

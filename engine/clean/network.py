@@ -69,7 +69,7 @@ class CleanNetwork(nn.Module):
         still = weights.new_zeros(self.config.layers, len(weights), self.config.hidden)
         return State(weights, torch.zeros_like(weights), still, still)
 
-    def forward(self, seen: Tensor, present: Tensor, step_s: Tensor, state: State, dropout: float = 0.0) -> State:
+    def forward(self, seen: Tensor, present: Tensor, step_s: Tensor, state: State, *, dropout: float = 0.0) -> State:
         """Advance one frame.
 
         Parameters
@@ -89,7 +89,9 @@ class CleanNetwork(nn.Module):
             hidden.append(h)
             cell.append(c)
         rate, offset, motion = self.leave(x).split(_SHAPES, dim=1)
-        follow = -torch.expm1(-step_s * _RATE * nn.functional.softplus(rate)) * present  # share of the way in this frame
+        follow = (
+            -torch.expm1(-step_s * _RATE * nn.functional.softplus(rate)) * present
+        )  # share of the way in this frame
         moved = state.weights + follow * (innovation + _OFFSET * offset) + step_s * motion
         weights = moved + (moved.clamp(0.0, 1.0) - moved).detach()  # a clamp that lets gradients through
         return State(weights, (weights - state.weights) / step_s, torch.stack(hidden), torch.stack(cell))
@@ -111,12 +113,12 @@ def _features(state: State, innovation: Tensor, present: Tensor, step_s: Tensor)
 
 
 def run(
-    network: CleanNetwork, seen: Tensor, present: Tensor, step_s: Tensor, state: State, dropout: float = 0.0
+    network: CleanNetwork, seen: Tensor, present: Tensor, step_s: Tensor, state: State, *, dropout: float = 0.0
 ) -> tuple[Tensor, State]:
     """Clean whole sequences: (batch, frames, 52), (batch, frames, 1) twice -> (batch, frames, 52) and the last state."""
     made = []
     for index in range(seen.shape[1]):
-        state = network(seen[:, index], present[:, index], step_s[:, index], state, dropout)
+        state = network(seen[:, index], present[:, index], step_s[:, index], state, dropout=dropout)
         made.append(state.weights)
     return torch.stack(made, dim=1), state
 

@@ -110,7 +110,8 @@ class FullyConnected(nn.Module):
     def estimate(self, seen: Array) -> Array:
         """Estimate derivatives of numpy features."""
         with torch.inference_mode():
-            return self(torch.tensor(seen, dtype=torch.float32)).numpy().astype(np.float64)
+            made: Array = self(torch.tensor(seen, dtype=torch.float32)).numpy().astype(np.float64)
+        return made
 
 
 @dataclass(frozen=True, eq=False)

@@ -72,9 +72,7 @@ def clean(
     return Cleaned(take.with_weights(weights), take.weights - weights, lag, (start, stop))
 
 
-def run(
-    weights: Array, lost: Mask, times_s: Array, cleaner: Cleaner, progress: Progress = lambda share: None
-) -> Array:
+def run(weights: Array, lost: Mask, times_s: Array, cleaner: Cleaner, progress: Progress = lambda share: None) -> Array:
     """Return the causal estimate, (frames, 52), of tracked weights at their times."""
     steps = np.diff(times_s, prepend=times_s[0])
     state = cleaner.start(weights[0])

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 import torch
 from torch import Tensor
 
@@ -31,15 +32,19 @@ class Settings:
     """What a training run depends on; the paper's values unless its place says otherwise."""
 
     seed: int = 0
-    epochs: int = 50  # the learning rate falls to nothing by the last
+    epochs: int = 40  # the learning rate falls to nothing by the last
     batches: int = 4  # to an epoch; every batch is spoilt anew
     chunk: int = 200
-    first_chunk: int = 50  # for the first two thirds of the epochs: four times the steps, at the price of a short memory
+    first_chunk: int = (
+        50  # for the first two thirds of the epochs: four times the steps, at the price of a short memory
+    )
     chunks: int = 4  # consecutive chunks of one stream, the state handed on: a live stream does not begin anew
     streams: int = 64
     rate: float = 1e-3
     dropout: float = 0.0  # the paper's 0.3 cost accuracy here, where augmentation already keeps it from overfitting
-    derivative_share: float = 0.0003  # per (weight / s)^2; the paper's 0.01 outweighs the error itself and smooths blinks away
+    derivative_share: float = (
+        0.0003  # per (weight / s)^2; the paper's 0.01 outweighs the error itself and smooths blinks away
+    )
     distance_share: float = 0.004  # per cm; the paper's 0.1 would drown the rest
     input_distance_share: float = 0.8
     synthetic_minutes: float = 8.0
@@ -73,7 +78,7 @@ def make_batch(pieces: list[Array], settings: Settings, rng: np.random.Generator
     """Draw pieces in proportion to their length, each at a random rate and strength of faults."""
     lengths = np.array([len(piece) for piece in pieces], float)
     frames = settings.chunk * settings.chunks
-    columns: list[tuple[Array, Array, Array, Array]] = []
+    columns: list[tuple[npt.NDArray[Any], ...]] = []
     for index in rng.choice(len(pieces), settings.streams, p=lengths / lengths.sum()):
         truth, times = stream(pieces[index], RATES_FPS[int(rng.integers(len(RATES_FPS)))], frames, rng)
         tracked = degrade(truth, times, scaled(settings.faults, rng.uniform(*settings.strengths)), rng)
@@ -137,7 +142,9 @@ class Trainer:
             for group in self._optimizer.param_groups:
                 group["lr"] = settings.rate * (0.5 + 0.5 * np.cos(np.pi * share)) * min(1.0, 0.3 + epoch / 4)
             chunk = settings.first_chunk if share < 2 / 3 else settings.chunk
-            learnt = [self._learn(make_batch(self._training, settings, self._rng), chunk) for _ in range(settings.batches)]
+            learnt = [
+                self._learn(make_batch(self._training, settings, self._rng), chunk) for _ in range(settings.batches)
+            ]
             terms = self.validate() | {"training_mse": float(np.mean(learnt))}
             if terms["mse"] < best["mse"]:
                 best, best_state = terms, self._copy()
@@ -196,7 +203,7 @@ class Trainer:
 
 
 def _chunks(batch: Batch, length: int) -> list[Batch]:
-    cut = [part.split(length, dim=1) for part in batch]
+    cut = [torch.split(part, length, dim=1) for part in batch]
     return [Batch(*parts) for parts in zip(*cut, strict=True)]
 
 
@@ -215,9 +222,7 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
     settings = settings or Settings()
     training, validation, _ = split(data)
     partial = out / "clean.partial.safetensors"
-    trainer = Trainer(
-        training_pieces(training, settings), [piece.weights for piece in validation], settings, partial
-    )
+    trainer = Trainer(training_pieces(training, settings), [piece.weights for piece in validation], settings, partial)
     figures = trainer.run(report)
     path = out / "clean.safetensors"
     save_model(path, trainer.network.state_dict(), kind="clean", config=config_of(trainer.network))
@@ -240,5 +245,3 @@ def _card(training: list[Piece], settings: Settings, metrics: dict[str, float]) 
         metrics={"validation": metrics},
         notes="Trained against simulated tracker faults; those of another tracker may differ.",
     )
-
-

@@ -18,7 +18,7 @@ from engine.corpus import split
 from engine.errors import EngineError
 from engine.evaluate.filters import Filter, Kalman, OneEuro, savgol
 from engine.models.checkpoint import MODELS, load_model, save_model
-from engine.take import MODEL_FPS, SHAPES, Array
+from engine.take import MODEL_FPS, Array
 
 Report = Callable[[str], None]
 FILE = "clean_rivals.safetensors"
@@ -98,9 +98,7 @@ def _best_leak(estimate: Estimate, orders: int, spoilt: list[Spoilt]) -> tuple[f
     return min(errors), LEAKS[int(np.argmin(errors))]
 
 
-def _samples(
-    pieces: list[Array], settings: Settings, orders: int, rng: np.random.Generator
-) -> tuple[Array, Array]:
+def _samples(pieces: list[Array], settings: Settings, orders: int, rng: np.random.Generator) -> tuple[Array, Array]:
     """Return features and targets of a batch of spoilt streams, the very ones the recurrent network learns from."""
     batch = make_batch(pieces, settings, rng)
     seen, wanted = [], []
@@ -125,10 +123,10 @@ def _best_dense(
             for group in optimizer.param_groups:
                 group["lr"] = 1e-3 * (1 - index / batches)
             seen, wanted = (torch.tensor(x, dtype=torch.float32) for x in _samples(pieces, settings, orders, rng))
-            for rows in torch.randperm(len(seen)).split(512):
+            for rows in torch.split(torch.randperm(len(seen)), 512):
                 loss = (network(seen[rows]) - wanted[rows]).square().mean()
                 optimizer.zero_grad()
-                loss.backward()  # type: ignore[no-untyped-call]
+                loss.backward()
                 optimizer.step()
         mse, leak = _best_leak(network.estimate, orders, spoilt)
         report(f"fully connected, {orders} orders: leak {leak}, validation mse {mse:.6f}")
@@ -155,7 +153,7 @@ def _boost(seen: Array, wanted: Array, *, trees: int = 40, leaves: int = 15) -> 
         raise EngineError("Boosted trees need scikit-learn.", "Install it: pip install scikit-learn.") from problem
     nodes: dict[str, list[Array]] = {name: [] for name in _TREE_NODES}
     roots, base, count = [], [], 0
-    for output in range(len(SHAPES)):
+    for output in range(wanted.shape[1]):
         model = HistGradientBoostingRegressor(
             max_iter=trees, max_leaf_nodes=leaves, learning_rate=0.15, early_stopping=False, random_state=0
         ).fit(seen, wanted[:, output])

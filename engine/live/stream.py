@@ -165,9 +165,7 @@ class Stream:
         clean = (1 - self.strength) * self._raw + self.strength * self._state.shown
         latency_ms = (now() - arrived_s) * 1e3
         lost = arrival.weights is None
-        return LiveFrame(
-            subject, arrival.time_s, arrival.fps, self._raw, clean, arrival.rotations, lost, latency_ms
-        )
+        return LiveFrame(subject, arrival.time_s, arrival.fps, self._raw, clean, arrival.rotations, lost, latency_ms)
 
     def _advance(self, arrival: Arrival) -> CleanState:
         """Return the state after a frame; frames that never came are bridged by the face's own motion."""

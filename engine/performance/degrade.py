@@ -33,7 +33,7 @@ class Faults:
     lost_s : lengths of lost runs to draw from, seconds (measured)
     amplitude : smallest share of a motion's size that the tracker reports, drawn per take and part of the face
         (measured: blink peaks of the dirty takes over those of the cleanest one)
-    lag_s : time constant of the tracker's own smoothing, drawn from 0 to this (assumed)
+    lag_s : longest delay, drawn per take from 0 to this (assumed)
     cross_talk : share of a shape's weight that shows on another shape of the same part (assumed)
     """
 
@@ -91,7 +91,7 @@ def degrade(weights: Array, times_s: Array, faults: Faults, rng: np.random.Gener
     times_s : (frames,) when each frame was taken, increasing, seconds
     """
     steps = np.diff(times_s, prepend=times_s[0] - np.median(np.diff(times_s)) if len(times_s) > 1 else -1 / 30)
-    seen = _lag(weights * _amplitude(faults.amplitude, rng), steps, faults.lag_s * rng.random())
+    seen = _late(weights * _amplitude(faults.amplitude, rng), times_s, faults.lag_s * rng.random())
     seen = seen @ _cross_talk(faults.cross_talk, rng)
     seen = seen + _jitter(weights, steps, faults, rng)
     seen = np.clip(_spiked(seen, steps, faults, rng), 0.0, 1.0)
@@ -116,12 +116,13 @@ def _amplitude(least: float, rng: np.random.Generator) -> Array:
     return np.asarray(np.minimum(shares + (own + own[MIRROR]) / 2, 1.0))
 
 
-def _lag(weights: Array, steps: Array, time_constant_s: float) -> Array:
-    if not time_constant_s:
-        return weights
-    keep = np.exp(-steps / time_constant_s)
-    keep[0] = 0.0
-    return _recursion(keep, (1 - keep)[:, None] * weights)
+def _late(weights: Array, times_s: Array, lag_s: float) -> Array:
+    """Return what the face was a moment ago, between frames by a straight line."""
+    asked = np.clip(times_s - lag_s, times_s[0], None)
+    after = np.clip(np.searchsorted(times_s, asked), 1, len(times_s) - 1)
+    before = after - 1
+    part = ((asked - times_s[before]) / (times_s[after] - times_s[before]))[:, None]
+    return np.asarray((1 - part) * weights[before] + part * weights[after])
 
 
 def _recursion(keep: Array, drive: Array) -> Array:
@@ -170,7 +171,9 @@ def _stretches(steps: Array, per_s: float, lengths_s: tuple[float, ...], rng: np
 def changing_times(duration_s: float, rng: np.random.Generator) -> Array:
     """Return (frames,) times of a source whose rate wanders between 24 and 120 fps and whose frames come unevenly."""
     count = int(duration_s * 120) + 2
-    pace = np.interp(np.arange(count), np.arange(0, count + 60, 60), rng.uniform(24, 120, len(range(0, count + 60, 60))))
+    pace = np.interp(
+        np.arange(count), np.arange(0, count + 60, 60), rng.uniform(24, 120, len(range(0, count + 60, 60)))
+    )
     times = np.cumsum(rng.uniform(0.8, 1.2, count) / pace)
     return np.asarray(times[times <= duration_s] - times[0])
 
@@ -178,15 +181,19 @@ def changing_times(duration_s: float, rng: np.random.Generator) -> Array:
 def measure(take: Take) -> dict[str, float]:
     """Return the strengths that a take tells, by the names of `Faults`; quiet stretches tell jitter, repeats freezing."""
     kept: Mask = ~take.lost
-    noise = np.diff(take.weights, n=4, axis=0) / np.sqrt(70)  # the fourth difference of white noise has 70 x its variance
+    noise = np.diff(take.weights, n=4, axis=0) / np.sqrt(
+        70
+    )  # the fourth difference of white noise has 70 x its variance
     window = max(4, round(take.fps / 2))
     count = len(noise) // window
     cut = (count, window, len(SHAPES))
     level = np.sqrt((noise[: count * window].reshape(cut) ** 2).mean(axis=1))
     height = take.weights[2:-2][: count * window].reshape(cut).mean(axis=1)
-    whole = kept[2:-2][: count * window].reshape(count, window).all(axis=1)[:, None]
-    rest, active = whole & (height > 0.02) & (height < 0.1), whole & (height > 0.3)
-    still = kept[1:] & kept[:-1] & (np.diff(take.weights, axis=0) == 0).all(axis=1)
+    whole: Mask = np.all(kept[2:-2][: count * window].reshape(count, 1, window), axis=2)
+    rest: Mask = whole & (height > 0.02) & (height < 0.1)
+    active: Mask = whole & (height > 0.3)
+    still: Mask = kept[1:] & kept[:-1]
+    still &= np.all(np.diff(take.weights, axis=0) == 0, axis=1)
     return {
         "jitter_rest": float(np.percentile(level[rest], 90)) if rest.any() else 0.0,
         "jitter_active": float(np.percentile((level / np.maximum(height, 1e-6))[active], 90)) if active.any() else 0.0,

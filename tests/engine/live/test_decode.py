@@ -60,7 +60,9 @@ def test_what_is_encoded_is_decoded(device: str, subject: str, frame: int, value
 
 def test_bytes_lie_where_the_format_says() -> None:
     packed = b"\x06" + struct.pack(">i", 36) + b"d" * 36 + struct.pack(">i", 3) + b"Bob"
-    packed += struct.pack(">ifii", 120, 0.5, 60, 1) + b"\x3d" + struct.pack(">61f", *(index / 100 for index in range(61)))
+    packed += (
+        struct.pack(">ifii", 120, 0.5, 60, 1) + b"\x3d" + struct.pack(">61f", *(index / 100 for index in range(61)))
+    )
     made = decode(packed)
     assert isinstance(made, Packet) and made.weights is not None
     assert (made.subject, made.time_s, made.fps) == ("Bob", 120.5 / 60, 60.0)
