@@ -17,6 +17,7 @@ from engine.clean.distances import Distances
 from engine.clean.material import CHANGING, cubic
 from engine.clean.network import CleanConfig, CleanNetwork, State, config_of, run
 from engine.corpus import Piece, split
+from engine.errors import EngineError
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
 from engine.performance.augment import Levers, augment
 from engine.performance.corpus import synthetic_performances
@@ -217,7 +218,8 @@ def training_pieces(pieces: list[Piece], settings: Settings) -> list[Array]:
 def train(data: Path, out: Path = MODELS, settings: Settings | None = None, report: Report = print) -> dict[str, Any]:
     """Train on the training split; writes the model and its card, returns the validation figures.
 
-    Stopped by Ctrl+C, it writes what it has; run again, it goes on from there.
+    Stopped by Ctrl+C, it goes on from the last epoch when run again. The methods that cleaning is compared with are
+    tuned at the end, where scikit-learn is installed.
     """
     settings = settings or Settings()
     training, validation, _ = split(data)
@@ -228,7 +230,17 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
     save_model(path, trainer.network.state_dict(), kind="clean", config=config_of(trainer.network))
     save_card(path, _card(training, settings, figures))
     partial.unlink(missing_ok=True)
+    _train_rivals(data, out, report)
     return figures
+
+
+def _train_rivals(data: Path, out: Path, report: Report) -> None:
+    from engine.clean.tuning import train_rivals  # it learns from this module's batches
+
+    try:
+        train_rivals(data, out, report=report)
+    except EngineError as missing:
+        report(f"The rivals stay as they are. {missing}")
 
 
 def _card(training: list[Piece], settings: Settings, metrics: dict[str, float]) -> Card:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 from typing import Any
 
@@ -10,20 +11,24 @@ import numpy as np
 from engine.clean.infer import bundled
 from engine.clean.lag import lag_ms
 from engine.clean.material import CHANGING, Spoilt, spoil
-from engine.clean.takes import run
+from engine.clean.takes import clean, run
 from engine.clean.tuning import load_rivals
-from engine.controls import CONTROL_INDEX, bundled_measurer, measure
+from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer, measure
 from engine.corpus import SHORTEST, TEST, data_folder, load_takes
+from engine.errors import EngineError
 from engine.evaluate import Report, Row
 from engine.evaluate.filters import Filter, exponential, gaussian, raw
 from engine.performance.degrade import Tracked
-from engine.take import SHAPES, Array, Mask, runs
+from engine.take import SHAPES, Array, Mask, Take, runs
 
 RATES_FPS = (30.0, 60.0, 120.0, CHANGING)
 LOOKS_AHEAD = {"gaussian_1", "gaussian_5", "savgol"}
 LIPS_CLOSED_MM = 3.0
 LID_CLOSED_SHARE = 1 / 3  # of the eye's opening at rest
 LONGEST_BLINK_S = 0.6  # eyes shut for longer are shut, not blinking
+DIRTY = ("apfel", "S88-001")  # recorded takes that the tracker itself has spoilt
+DRAWN = [CONTROL_INDEX[name] for name in ("eyelid_right", "eyelid_left", "lips_vertical")]
+CLOSE_LOOK_S = 4.0
 RESTING_PER_S = 0.05  # a truth slower than this rests: what moves there is jitter
 SEEDS = (7, 8, 9)  # every take is spoilt this often, since the luck of lost runs weighs more than the methods do
 
@@ -137,3 +142,51 @@ def _mean(parts: list[Array]) -> float:
 
 def _share(part: int, whole: int) -> float | None:
     return float(part / whole) if whole else None
+
+
+def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
+    """Draw lids and lips of the dirty recorded takes, or of a folder's, before and after cleaning; lost runs shaded."""
+    made = []
+    for take, whole_face in load_takes(data or data_folder()):
+        if whole_face and (data is not None or Path(take.name).stem in DIRTY):
+            report(f"drawing {take.name}")
+            made.append(_draw(take, folder / f"clean_{Path(take.name).stem}.png"))
+    return made
+
+
+def _draw(take: Take, path: Path) -> Path:
+    """Draw the whole take, and a closer look at its roughest stretch and at the end of its longest lost run."""
+    plots = pyplot()
+    cleaned = clean(take).take
+    before, after = (measure(weights)[:, DRAWN] for weights in (take.weights, cleaned.weights))
+    close = round(CLOSE_LOOK_S * take.fps)
+    rough = np.convolve(np.abs(np.diff(before, n=2, axis=0)).sum(axis=1), np.ones(close), "same")
+    centres = [int(np.argmax(rough))]
+    centres += [stop for start, stop in sorted(runs(take.lost), key=lambda run: run[0] - run[1])[:1]]
+    looks = [slice(0, len(take))] + [slice(max(0, at - close // 2), at + close // 2) for at in centres]
+    figure, axes = plots.subplots(len(DRAWN), len(looks), figsize=(6 * len(looks), 6), squeeze=False)
+    for column, look in enumerate(looks):
+        time_s = np.arange(len(take))[look] / take.fps
+        for row, control in enumerate(DRAWN):
+            axis = axes[row, column]
+            axis.plot(time_s, before[look, row], color="#999999", linewidth=1, label="recorded")
+            axis.plot(time_s, after[look, row], color="#0072B2", linewidth=1, label="clean")
+            axis.fill_between(
+                time_s, 0, 1, take.lost[look], transform=axis.get_xaxis_transform(), alpha=0.15, color="k"
+            )
+            axis.set(title=CONTROLS[control].title, xlabel="s", ylabel="mm")
+    axes[0, 0].legend()
+    figure.tight_layout()
+    figure.savefig(path, dpi=80)
+    plots.close(figure)
+    return path
+
+
+def pyplot() -> Any:
+    """Return matplotlib's pyplot without a window; raises `EngineError` where it is not installed."""
+    try:
+        import matplotlib
+    except ImportError as missing:
+        raise EngineError("Figures need matplotlib.", "Install it: pip install 'retake[figures]'.") from missing
+    matplotlib.use("Agg")
+    return importlib.import_module("matplotlib.pyplot")
