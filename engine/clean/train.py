@@ -19,7 +19,7 @@ from engine.clean.network import CleanConfig, CleanNetwork, State, config_of, ru
 from engine.corpus import Piece, split
 from engine.errors import EngineError
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
-from engine.performance.augment import Levers, augment
+from engine.performance.augment import LOWER, Levers, augment
 from engine.performance.corpus import synthetic_performances
 from engine.performance.degrade import Faults, changing_times, degrade, scaled
 from engine.take import MODEL_FPS, Array
@@ -51,6 +51,7 @@ class Settings:
     synthetic_minutes: float = 8.0
     lost_share: float = 0.25  # of the loss on lost frames, whose luck would otherwise drown what can be learnt
     ridge: float = 1e-3
+    mouth_share: float = 0.3
     strengths: tuple[float, float] = (0.2, 1.4)
     faults: Faults = field(default_factory=Faults)
     levers: Levers = field(default_factory=lambda: Levers(copies=4))
@@ -76,8 +77,12 @@ def stream(piece: Array, fps: float, frames: int, rng: np.random.Generator) -> t
 
 
 def make_batch(pieces: list[Array], settings: Settings, rng: np.random.Generator) -> Batch:
-    """Draw pieces in proportion to their length, each at a random rate and strength of faults."""
-    lengths = np.array([len(piece) for piece in pieces], float)
+    """Draw pieces in proportion to their length, each at a random rate and strength of faults.
+
+    Pieces that animate the mouth alone count less: most of a face's shapes have nothing to learn from them.
+    """
+    whole = np.array([piece[:, ~LOWER].any() for piece in pieces])
+    lengths = np.array([len(piece) for piece in pieces]) * np.where(whole, 1.0, settings.mouth_share)
     frames = settings.chunk * settings.chunks
     columns: list[tuple[npt.NDArray[Any], ...]] = []
     for index in rng.choice(len(pieces), settings.streams, p=lengths / lengths.sum()):

@@ -110,7 +110,7 @@ def _samples(pieces: list[Array], settings: Settings, orders: int, rng: np.rando
 
 
 def _best_dense(
-    pieces: list[Array], settings: Settings, spoilt: list[Spoilt], report: Report, batches: int = 60
+    pieces: list[Array], settings: Settings, spoilt: list[Spoilt], report: Report, batches: int = 30
 ) -> tuple[FullyConnected, dict[str, Any]]:
     """Train a dense network for each order on the loss of derivatives alone (BSS20b section 4.4); keep the best."""
     found = []
@@ -146,7 +146,7 @@ def _best_trees(
     return trees, {"orders": orders, "leak": leak}
 
 
-def _boost(seen: Array, wanted: Array, *, trees: int = 40, leaves: int = 15) -> Trees:
+def _boost(seen: Array, wanted: Array, *, trees: int = 30, leaves: int = 15) -> Trees:
     try:
         from sklearn.ensemble import HistGradientBoostingRegressor
     except ImportError as problem:
