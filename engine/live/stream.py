@@ -65,17 +65,19 @@ class Clock:
 
     def __init__(self) -> None:
         self._shift: float | None = None  # what is added to the sender's time
-        self._last = 0.0
+        self._last, self._next = 0.0, 0.0
+
+    def restart(self) -> None:
+        """Let the next packet follow the last one, whatever its sender's clock says."""
+        self._shift = None
 
     def place(self, packet: Packet, arrived_s: float) -> tuple[float, bool]:
         """Return time since the stream began, and whether a newer frame has come before."""
         stated = arrived_s if packet.time_s is None else packet.time_s
-        if self._shift is None:
-            self._shift = -stated
+        if self._shift is None or not -LATE_S <= stated + self._shift - self._last <= RESTART_S:
+            self._shift = self._next - stated
         time_s = stated + self._shift
-        if not -LATE_S <= time_s - self._last <= RESTART_S:
-            self._shift = self._last + 1 / packet.fps - stated
-            time_s = self._last + 1 / packet.fps
+        self._next = max(self._next, time_s + 1 / packet.fps)
         late = time_s < self._last
         self._last = max(self._last, time_s)
         return time_s, late
@@ -103,15 +105,16 @@ class Stream:
         self.counts: Counter[str] = Counter()
         self.subjects: list[str] = []
         self._cleaner = cleaner or bundled()
+        self._chosen: str | None = None
+        self._clock = Clock()
         self._restart()
 
     def choose(self, subject: str) -> None:
-        """Follow another subject from now on."""
-        self.subject = subject
-        self._restart()
+        """Follow another subject from the next datagram on; may be called on any thread."""
+        self._chosen = subject
 
     def _restart(self) -> None:
-        self._clock = Clock()
+        self._clock.restart()
         self._state: CleanState | None = None
         self._raw: Floats = np.zeros(len(SHAPES), np.float32)
         self._time_s = 0.0
@@ -123,6 +126,9 @@ class Stream:
         ----------
         arrived_s : when it arrived, on the clock that `now` reads
         """
+        if self._chosen is not None:
+            self.subject, self._chosen = self._chosen, None
+            self._restart()
         decoded = decode(data)
         if isinstance(decoded, Drop):
             self.counts[decoded.value] += 1

@@ -84,7 +84,8 @@ def test_only_the_chosen_face_is_followed() -> None:
     rig = Rig()
     assert rig.send(face(0, subject="Ana")) and rig.send(face(1, subject="Bob")) is None
     rig.stream.choose("Bob")
-    assert rig.send(face(2, subject="Bob")) and rig.stream.subjects == ["Ana", "Bob"]
+    frame = rig.send(face(2, subject="Bob"))
+    assert frame is not None and frame.time_s == 1 / 60 and rig.stream.subjects == ["Ana", "Bob"]
     for index in range(100):
         rig.send(face(3, subject=f"invented {index}"))
     assert len(rig.stream.subjects) == MAX_SUBJECTS
