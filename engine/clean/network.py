@@ -20,7 +20,7 @@ class CleanConfig:
 
     hidden: int = 128
     layers: int = 1
-    first_rate_per_s: float = 200.0
+    first_rate_per_s: float = 120.0
 
 
 class State(NamedTuple):

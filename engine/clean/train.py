@@ -227,6 +227,7 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
     tuned at the end, where scikit-learn is installed.
     """
     settings = settings or Settings()
+    torch.set_num_threads(1)  # the steps are small: a second thread waits more than it works
     training, validation, _ = split(data)
     partial = out / "clean.partial.safetensors"
     trainer = Trainer(training_pieces(training, settings), [piece.weights for piece in validation], settings, partial)

@@ -39,13 +39,13 @@ def train_rivals(data: Path, out: Path = MODELS, settings: Settings | None = Non
     trees, chosen["boosted_trees"] = _best_trees(pieces, settings, spoilt, report)
     tensors = {f"dense.{name}": value for name, value in dense.state_dict().items()}
     tensors |= {f"trees.{name}": torch.tensor(getattr(trees, name)) for name in ("roots", "base", *_TREE_NODES)}
-    save_model(out / FILE, tensors, kind="clean_rivals", config=chosen)
+    save_model(out / FILE, tensors, kind="clean", config=chosen)
     report(f"chose {json.dumps(chosen)}")
 
 
 def load_rivals(folder: Path = MODELS) -> dict[str, Filter]:
     """Return the tuned filters and memoryless methods by name; raises `AssetError` where the file is missing."""
-    tensors, chosen = load_model(folder / FILE, kind="clean_rivals")
+    tensors, chosen = load_model(folder / FILE, kind="clean")
     made: dict[str, Filter] = {
         name: Kalman(**chosen[name]) if name == "kalman" else OneEuro(**chosen[name]) for name in ("one_euro", "kalman")
     }
