@@ -36,22 +36,18 @@ class Settings:
     epochs: int = 40  # the learning rate falls to nothing by the last
     batches: int = 4  # to an epoch; every batch is spoilt anew
     chunk: int = 200
-    first_chunk: int = (
-        50  # for the first two thirds of the epochs: four times the steps, at the price of a short memory
-    )
+    first_chunk: int = 50  # for the first two thirds of the epochs: four times the steps, with a short memory
     chunks: int = 4  # consecutive chunks of one stream, the state handed on: a live stream does not begin anew
     streams: int = 64
     rate: float = 1e-3
-    dropout: float = 0.0  # the paper's 0.3 cost accuracy here, where augmentation already keeps it from overfitting
-    derivative_share: float = (
-        0.0003  # per (weight / s)^2; the paper's 0.01 outweighs the error itself and smooths blinks away
-    )
+    dropout: float = 0.0  # the paper's is 0.3; here every batch is spoilt anew, which keeps from overfitting too
+    derivative_share: float = 0.0003  # per (weight / s)^2; at the paper's 0.01 it outweighs the error ten times
     distance_share: float = 0.004  # per cm; the paper's 0.1 would drown the rest
     input_distance_share: float = 0.8
     synthetic_minutes: float = 8.0
     lost_share: float = 0.25  # of the loss on lost frames, whose luck would otherwise drown what can be learnt
     ridge: float = 1e-3
-    mouth_share: float = 0.3
+    mouth_share: float = 0.3  # weight of takes that animate the mouth alone
     strengths: tuple[float, float] = (0.2, 1.4)
     faults: Faults = field(default_factory=Faults)
     levers: Levers = field(default_factory=lambda: Levers(copies=4))
