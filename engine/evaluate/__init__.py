@@ -14,6 +14,7 @@ Report = Callable[[str], None]
 
 # Each is a module of this package with `table(data, report)` and, where the paper draws it, `figures(data, folder, report)`.
 TABLES: dict[str, str] = {
+    "clean": "Tracker noise removed: error, closures and lag at four frame rates (BSS20b tables 1 and 2)",
     "regress": "Control curves to weights: mean squared error, closures (BSBS19 table 1, figure 8)",
     "spacetime": "Performances carried to a second head and back (SLS12 figures 9, 11)",
 }
