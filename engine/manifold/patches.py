@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
 
 from engine.errors import EditError
 from engine.take import Array
@@ -36,32 +37,52 @@ def rings(triangles: npt.NDArray[np.integer], points: Array, *, size: int = 1) -
 
     The entries are weights: near neighbours count more, the vertex itself most. A row is one patch of `alignment`.
     """
-    reached = (adjacency(triangles, len(points)) + sp.eye_array(len(points))).tocsr()
-    ring = reached.copy()
+    ring = (adjacency(triangles, len(points)) + sp.eye_array(len(points))).tocsr()
+    reached = ring
     for _ in range(size - 1):
         reached = (reached @ ring).tocsr()
     reached.sort_indices()
-    row = np.repeat(np.arange(len(points)), np.diff(reached.indptr))
-    own = row == reached.indices
-    away = np.linalg.norm(points[row] - points[reached.indices], axis=1)
-    positive = np.where(own | (away == 0), np.inf, away)
-    nearest = np.full(len(points), np.inf)
-    np.minimum.at(nearest, row, positive)
-    with np.errstate(invalid="ignore"):
-        falloff = np.where(np.isfinite(nearest[row]), (nearest[row] / np.maximum(away, nearest[row])) ** REACH, 1.0)
-    falloff[own] = 0.0
-    total = np.bincount(row, falloff, minlength=len(points))
-    reached.data = np.where(own, CENTRE_SHARE * np.maximum(total[row], 1e-12), falloff)
-    return reached
+    return _weighted(reached, points)
+
+
+def similar(points: Array, *, size: int) -> sp.csr_array:
+    """Return each data point's neighbourhood: itself and the `size` - 1 points most like it, weighted as `rings`.
+
+    Of frames these are the ones just before and after, and those where the face comes by again.
+    """
+    size = min(size, len(points))
+    if size == 1:
+        return sp.eye_array(1, format="csr")
+    _, nearest = cKDTree(points).query(points, k=size)
+    missed = ~(nearest == np.arange(len(points))[:, None]).any(axis=1)  # among more equals than `size`
+    nearest[missed, -1] = np.flatnonzero(missed)
+    nearest.sort(axis=1)
+    starts = np.arange(len(points) + 1) * size
+    return _weighted(sp.csr_array((np.ones(nearest.size), nearest.ravel(), starts), shape=2 * (len(points),)), points)
 
 
 def windows(frames: int, *, size: int) -> sp.csr_array:
-    """Return each frame's neighbourhood: `size` consecutive frames around it, shifted inwards at the ends."""
+    """Return each frame's neighbourhood in time: `size` consecutive frames around it, shifted inwards at the ends."""
     size = min(size, frames)
     first = np.clip(np.arange(frames) - size // 2, 0, frames - size)
     members = first[:, None] + np.arange(size)
     starts = np.arange(frames + 1) * size
     return sp.csr_array((np.ones(members.size), members.ravel(), starts), shape=(frames, frames))
+
+
+def _weighted(pattern: sp.csr_array, points: Array) -> sp.csr_array:
+    """Return the pattern with weights ``distance^-REACH``, and `CENTRE_SHARE` times their sum for a patch's own point."""
+    count = len(points)
+    row = np.repeat(np.arange(count), np.diff(pattern.indptr))
+    own = row == pattern.indices
+    away = np.linalg.norm(points[row] - points[pattern.indices], axis=1)
+    nearest = np.full(count, np.inf)
+    np.minimum.at(nearest, row, np.where(away > 0, away, np.inf))
+    closest = np.where(np.isfinite(nearest), nearest, 1.0)[row]
+    falloff = np.where(own, 0.0, (closest / np.maximum(away, closest)) ** REACH)
+    total = np.maximum(np.bincount(row, falloff, minlength=count), 1e-12)
+    weights = np.where(own, CENTRE_SHARE * total[row], falloff)
+    return sp.csr_array((weights, pattern.indices, pattern.indptr), shape=(count, count))
 
 
 def alignment(
