@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
+from scipy.spatial.distance import cdist
 
 from engine.errors import EditError
 from engine.manifold.patches import Indices, LabelSolver, alignment, similar
@@ -28,7 +29,7 @@ class Settings:
 
     neighbours: int = 100
     dimension: int = 20
-    stiffness: float = 1e-4
+    stiffness: float = 3e-5
     beta: float = 1e3
     at_once: int = 1200
 
@@ -96,27 +97,30 @@ def coordinates(source: Array) -> Array:
     return np.asarray(centred @ axes[:, ::-1][:, :COORDINATES])
 
 
-def suggest_frames(source: Array, count: int, *, labelled: npt.ArrayLike = ()) -> list[int]:
-    """Return which frames to label next: those that span the take best, each the one least like all before it.
+def suggest_frames(source: Array, count: int, *, labelled: Sequence[int] = (), at_once: int = 1200) -> list[int]:
+    """Return which frames to label next, best first: each brings the take's other frames nearest to a labelled one.
+
+    Greedy k-median on the distance between frames. (Always labelling the frame least like the others measured worse
+    than evenly spaced labels: such frames are alone in what they do.)
 
     Parameters
     ----------
     source : (frames, D) what the source does
     count : how many to add
     labelled : frames that have a label already
+    at_once : frames that are compared; of a longer take these are spread over it
     """
     points = coordinates(source)
-    chosen = [int(frame) for frame in np.asarray(labelled, np.int64).ravel()]
-    away = np.full(len(points), np.inf)
-    for frame in chosen:
-        away = np.minimum(away, np.linalg.norm(points - points[frame], axis=1))
+    candidates = _spread(len(points), np.asarray(labelled, np.int64), at_once)
+    away = cdist(points[candidates], points[candidates])
+    nearest = np.full(len(candidates), away.max() + 1.0)
+    for frame in labelled:
+        nearest = np.minimum(nearest, away[np.searchsorted(candidates, frame)])
     suggested: list[int] = []
-    for _ in range(min(count, len(points) - len(chosen))):
-        typical = not np.isfinite(away).any()  # the first is the most ordinary frame: what most others lean on
-        frame = int(np.argmin(np.linalg.norm(points, axis=1))) if typical else int(np.argmax(away))
-        suggested.append(frame)
-        away = np.minimum(away, np.linalg.norm(points - points[frame], axis=1))
-        away[[*chosen, *suggested]] = -1.0
+    for _ in range(min(count, len(candidates) - len(set(labelled)))):
+        best = int(np.argmin(np.minimum(away, nearest).sum(axis=1)))
+        suggested.append(int(candidates[best]))
+        nearest = np.minimum(nearest, away[best])
     return suggested
 
 

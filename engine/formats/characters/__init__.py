@@ -1,0 +1,1 @@
+"""Characters from other programs: glTF with morph targets, a folder of OBJ files, ICT-FaceKit."""
