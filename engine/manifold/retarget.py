@@ -143,18 +143,12 @@ def retarget_points(
     return retargeter.solve(np.stack([labels[int(f)].ravel() for f in frames])).reshape(base.shape)
 
 
-def retarget_weights(take: Take, source: Array, labels: dict[int, Array], settings: Settings | None = None) -> Take:
-    """Return the take as a target with shapes plays it, given the target's weights at a few frames.
-
-    Parameters
-    ----------
-    source : (frames, n, 3), mm, points of the head on which the take is seen; they tell which frames are alike
-    labels : the target's weights, (52,), by frame
-    """
+def retarget_weights(take: Take, labels: dict[int, Array], settings: Settings | None = None) -> Take:
+    """Return the take as a target with shapes plays it, given the target's weights, (52,), at a few frames."""
     frames = np.array(sorted(labels), np.int64)
     if not len(frames):
         raise EditError("There is no labelled frame.", "Pose the target at one frame or more.")
-    retargeter = Retargeter(source.reshape(len(source), -1), take.weights, frames, settings or Settings())
+    retargeter = Retargeter(take.weights, take.weights, frames, settings or Settings())
     asked = np.stack([np.asarray(labels[int(frame)], np.float64) for frame in frames])
     low, high = np.minimum(take.weights.min(axis=0), 0.0), np.maximum(take.weights.max(axis=0), 1.0)
     return take.with_weights(np.clip(retargeter.solve(asked), low, high))
