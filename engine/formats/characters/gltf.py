@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,7 +42,7 @@ def read(path: Path) -> RawCharacter:
     """Read all meshes of a glTF scene as one character; raises `FormatError` with one plain sentence."""
     try:
         document, binary = _document(path)
-        scene = pygltflib.GLTF2.from_dict(document)
+        scene = _structure(document)
         _require_readable(scene, path)
         accessors = Accessors(scene, binary, path)
         pieces = [
@@ -54,6 +55,12 @@ def read(path: Path) -> RawCharacter:
     except (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError, RecursionError) as error:
         raise FormatError(f"{path.name} is damaged or not a glTF 2.0 file.", EXPORT) from error
     return check(_joined(pieces, path))
+
+
+def _structure(document: dict[str, Any]) -> pygltflib.GLTF2:
+    with warnings.catch_warnings():  # it warns of every optional field that a file leaves out
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return pygltflib.GLTF2.from_dict(document, infer_missing=True)
 
 
 def _document(path: Path) -> tuple[dict[str, Any], bytes]:
@@ -143,10 +150,10 @@ def _pieces(mesh: pygltflib.Mesh, matrix: Array, accessors: Accessors, path: Pat
     names = (mesh.extras or {}).get("targetNames") if isinstance(mesh.extras, dict) else None
     shared: dict[str, list[pygltflib.Primitive]] = {}
     for primitive in mesh.primitives:
-        if primitive.mode in (None, TRIANGLES) and primitive.attributes.POSITION is not None:
-            shared.setdefault(f"{primitive.attributes.POSITION} {primitive.targets}", []).append(primitive)
+        if primitive.mode in (None, TRIANGLES) and _position(primitive.attributes) is not None:
+            shared.setdefault(f"{_position(primitive.attributes)} {primitive.targets}", []).append(primitive)
     for group in shared.values():
-        vertices = accessors.vectors(group[0].attributes.POSITION)
+        vertices = accessors.vectors(_position(group[0].attributes))
         triangles = [_triangles(primitive, len(vertices), accessors, path) for primitive in group]
         targets = _targets(group[0], names, len(vertices), accessors, path)
         turn = matrix[:3, :3].T
@@ -155,6 +162,11 @@ def _pieces(mesh: pygltflib.Mesh, matrix: Array, accessors: Accessors, path: Pat
             np.concatenate(triangles),
             {name: delta @ turn.astype(np.float32) for name, delta in targets.items()},
         )
+
+
+def _position(attributes: Any) -> Any:
+    """Return the accessor of the positions; the library gives attributes as an object or as they stand in the file."""
+    return attributes.get("POSITION") if isinstance(attributes, dict) else attributes.POSITION
 
 
 def _triangles(
@@ -176,7 +188,7 @@ def _targets(
         names = [f"target {number}" for number in range(len(targets))]
     found = {}
     for name, target in zip(names, targets, strict=True):
-        index = target.get("POSITION") if isinstance(target, dict) else getattr(target, "POSITION", None)
+        index = _position(target)
         if index is None:
             continue
         found[str(name)] = accessors.vectors(index, wanted=vertices, what=str(name)[:60]).astype(np.float32)

@@ -13,7 +13,7 @@ from engine.take import SHAPES
 SURE = 0.8  # likeness from which a guess is taken without asking
 WORTH_SHOWING = 0.6
 # Splits of one ARKit shape into two halves, and other programs' names for a shape.
-HALVES = ("browInnerUp", "cheekPuff", "mouthClose", "mouthFunnel", "mouthPucker", "jawOpen")
+HALVES = ("browInnerUp", "cheekPuff", "mouthFunnel", "mouthPucker")
 OTHER_NAMES = {"jawopen": ("mouthopen", "jawdrop"), "eyeblinkleft": ("eyecloseleft", "blinkleft")} | {
     "eyeblinkright": ("eyecloseright", "blinkright"),
     "tongueout": ("tonguestickout",),
