@@ -164,14 +164,10 @@ class LabelSolver:
                     system, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
                 )
         except (RuntimeError, Warning) as error:
-            raise EditError(
-                "The labels do not determine the result.", "Label more frames or points, not all of them in a line."
-            ) from error
-        pivots = np.abs(self._factor.U.diagonal())
-        if not len(pivots) or pivots.min() < 1e-13 * pivots.max():
-            raise EditError(
-                "The labels do not determine the result.", "Label more frames or points, not all of them in a line."
-            )
+            raise _undetermined() from error
+        # A shift of everything costs nothing, so equal labels give equal points: unless others are free as well.
+        if not np.allclose(self.solve(np.ones((len(labelled), 1))), 1.0, atol=1e-5):
+            raise _undetermined()
 
     def solve(self, labels: Array) -> Array:
         """Return all data points, (n, k), for labels (m, k)."""
@@ -183,3 +179,7 @@ class LabelSolver:
     def influence(self) -> Array:
         """Return how far each label moves each data point, (n, m): all solves to come in one matrix product."""
         return self.solve(np.eye(len(self._labelled)))
+
+
+def _undetermined() -> EditError:
+    return EditError("The labels do not determine the result.", "Label more frames or points, not all of them in a line.")
