@@ -29,7 +29,7 @@ class Settings:
 
     neighbours: int = 100
     dimension: int = 20
-    stiffness: float = 3e-5
+    stiffness: float = 1e-4
     beta: float = 1e3
     at_once: int = 1200
 
