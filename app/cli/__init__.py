@@ -7,11 +7,11 @@ import sys
 
 import typer
 
-from app.cli import smooth, tables, takes, training
+from app.cli import character, smooth, spacetime, tables, takes, training
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 
-FAMILIES = (takes, smooth, tables, training)
+FAMILIES = (takes, smooth, tables, training, spacetime, character)
 
 
 def build() -> typer.Typer:

@@ -15,6 +15,7 @@ Report = Callable[[str], None]
 # Each is a module of this package with `table(data, report)` and, where the paper draws it, `figures(data, folder, report)`.
 TABLES: dict[str, str] = {
     "regress": "Control curves to weights: mean squared error, closures (BSBS19 table 1, figure 8)",
+    "spacetime": "Performances carried to a second head and back (SLS12 figures 9, 11)",
     "manifold": "Retargeting from labelled frames, driving a mesh by points: error in mm (ZLL17 figures 6 to 10)",
 }
 
