@@ -201,7 +201,9 @@ def table(data: Path | None, report: Report) -> list[Row]:
         rows.append(_row("retarget", "semi_supervised_suggested", labels, suggested))
         report(f"retargeted with {labels} labels")
     for method, errors in drive_errors(data).items():
-        rows.append(_row("drive", method, POINTS, errors[:, 0]) | {"error_with_mouth_inside": float(errors[:, 1].mean())})
+        rows.append(
+            _row("drive", method, POINTS, errors[:, 0]) | {"error_with_mouth_inside": float(errors[:, 1].mean())}
+        )
     return rows
 
 
@@ -221,4 +223,3 @@ def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
     from engine.evaluate import manifold_figures
 
     return manifold_figures.draw(data, folder, report)
-

@@ -82,6 +82,6 @@ def laplacian_retarget(source: Array, source_rest: Array, target_rest: Array, la
     guess = _first_guess(source, source_rest, target_rest)
     frames = np.array(sorted(labels))
     second = np.diff(np.eye(len(source)), n=2, axis=0)
-    solver = LabelSolver(sp.csc_array(second.T @ second + 1e-9 * np.eye(len(source))), frames, beta=LABEL_WEIGHT)
+    solver = LabelSolver(sp.csc_array(second.T @ second), frames, beta=LABEL_WEIGHT)
     missing = (np.stack([labels[int(frame)] for frame in frames]) - guess[frames]).reshape(len(frames), -1)
     return np.asarray(guess + solver.solve(missing).reshape(guess.shape))

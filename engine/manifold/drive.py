@@ -60,7 +60,7 @@ class MeshDriver:
         vertices: Array,
         triangles: npt.NDArray[np.integer],
         points: Indices,
-        settings: Settings = Settings(),  # noqa: B008 -- frozen
+        settings: Settings = Settings(),
     ) -> None:
         self._rest = np.asarray(vertices, np.float64)
         self._points = np.asarray(points, np.int64)
@@ -139,7 +139,9 @@ def _require_usable(rest: Array, points: Indices) -> None:
         raise EditError(f"Vertex {values[counts.argmax()]} is a feature point twice.")
     spread = np.linalg.svd(rest[points] - rest[points].mean(axis=0), compute_uv=False)
     if spread[2] < 1e-6 * spread[0]:
-        raise EditError("All feature points lie in one plane.", "Add points in front of or behind it: nose, chin, ears.")
+        raise EditError(
+            "All feature points lie in one plane.", "Add points in front of or behind it: nose, chin, ears."
+        )
 
 
 def _influence(
@@ -150,9 +152,7 @@ def _influence(
     place[solved] = np.arange(len(solved))
     local = place[triangles[(place[triangles] >= 0).all(axis=1)]]
     neighbourhoods = rings(local, rest[solved], size=settings.rings)
-    energy = alignment(
-        rest[solved], neighbourhoods, dimension=settings.dimension, stiffness=settings.stiffness
-    )
+    energy = alignment(rest[solved], neighbourhoods, dimension=settings.dimension, stiffness=settings.stiffness)
     return LabelSolver(energy, place[points], beta=settings.beta).influence()
 
 
@@ -210,8 +210,25 @@ class _Carried:
 def _open_share(triangles: npt.NDArray[np.integer], parts: Indices) -> Array:
     """Return the share of each part's edges that belong to one triangle only, (parts,)."""
     count = int(parts.max()) + 1
-    edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2).astype(np.int64), axis=1)
+    edges = np.sort(
+        np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2).astype(np.int64), axis=1
+    )
     unique, uses = np.unique(edges[:, 0] * len(parts) + edges[:, 1], return_counts=True)
     part = parts[unique // len(parts)]
     total = np.bincount(part, minlength=count)
     return np.asarray(np.bincount(part, uses == 1, minlength=count) / np.maximum(total, 1))
+
+
+def aim(points_rest: Array, source_rest: Array, displacements: Array) -> Array:
+    """Return where feature points go, (frames, m, 3), when another face's markers lead them.
+
+    The source's movements are turned and scaled as its face at rest is laid onto the mesh; the head stays still.
+
+    Parameters
+    ----------
+    points_rest : (m, 3) the feature points on the mesh at rest
+    source_rest : (m, 3) the same points of the source at rest
+    displacements : (frames, m, 3) of the source's markers, the head's motion taken out; NaN where one was not seen
+    """
+    laid = fit_similarity(source_rest, points_rest[None], mirrored=False)
+    return np.asarray(points_rest + laid.scale[0] * (displacements @ laid.turn[0]))

@@ -182,4 +182,6 @@ class LabelSolver:
 
 
 def _undetermined() -> EditError:
-    return EditError("The labels do not determine the result.", "Label more frames or points, not all of them in a line.")
+    return EditError(
+        "The labels do not determine the result.", "Label more frames or points, not all of them in a line."
+    )

@@ -56,7 +56,7 @@ class Retargeter:
         source: Array,
         base: Array,
         labelled: Indices,
-        settings: Settings = Settings(),  # noqa: B008 -- frozen
+        settings: Settings = Settings(),
     ) -> None:
         self._base = np.asarray(base, np.float64)
         self._labelled = np.asarray(labelled, np.int64)
@@ -135,7 +135,9 @@ def retarget_points(
     source_rest, target_rest : (n, 3) the same points on both heads at rest
     labels : the target's points, (n, 3), by frame
     """
-    size = np.linalg.norm(target_rest - target_rest.mean(axis=0)) / np.linalg.norm(source_rest - source_rest.mean(axis=0))
+    size = np.linalg.norm(target_rest - target_rest.mean(axis=0)) / np.linalg.norm(
+        source_rest - source_rest.mean(axis=0)
+    )
     base = target_rest + size * (source - source_rest)
     frames = np.array(sorted(labels), np.int64)
     flat = base.reshape(len(base), -1)

@@ -151,7 +151,7 @@ class Accessors:
     def _beside(self, name: str) -> bytes:
         """Return a file of the same folder; whatever the name says, nothing else is opened."""
         shown = name[:60]
-        if "://" in name or ":" in name.split("/")[0]:
+        if "://" in name or ":" in name.split("/", maxsplit=1)[0]:
             raise self._fault(f"refers to {shown!r}: Retake opens no addresses")
         folder = self._path.resolve().parent
         try:

@@ -65,14 +65,15 @@ class Import:
 
 
 def detect_frame(raw: RawCharacter) -> Frame:
-    """Guess unit and upward axis: a head is a few hundred mm high, and much alike on its left and its right.
+    """Guess unit and upward axis: a head is a few hundred mm high.
 
-    The upward axis is the one along which shapes called jawOpen move the mesh most; without one it is the longer.
+    The jaw opens downwards and back: with Y up that is against Y, with Z up (facing against Y) along it. Without that
+    shape the upward axis is the longer of the two.
     """
     size = np.ptp(raw.vertices, axis=0)
     jaw = [delta for name, delta in raw.shapes.items() if any(m.shape == "jawOpen" for m in match_names([name]))]
-    travel = np.abs(np.sum(jaw, axis=0, dtype=np.float64)).sum(axis=0) if jaw else size
-    up = "y" if travel[1] >= travel[2] else "z"
+    upright = np.sum(jaw, axis=(0, 1), dtype=np.float64)[1] < 0 if jaw else size[1] >= size[2]
+    up = "y" if upright else "z"
     height = size[1 if up == "y" else 2]
     inside = [unit for unit, mm in UNITS_MM.items() if HEAD_MM[0] <= height * mm <= HEAD_MM[1]]
     unit = min(inside or UNITS_MM, key=lambda unit: abs(np.log(height * UNITS_MM[unit] / TYPICAL_MM)))
@@ -121,7 +122,9 @@ def _notices(frame: Frame, rows: Sequence[Match], raw: RawCharacter) -> list[str
         sentences.append(f"{len(missing)} of {len(SHAPES)} shapes were not found: {shown}.")
     doubtful = [row.source for row in rows if row.shape and not row.sure]
     if doubtful:
-        sentences.append(f"{len(doubtful)} names are like a shape but not alike enough to be taken: {', '.join(doubtful[:4])}.")
+        sentences.append(
+            f"{len(doubtful)} names are like a shape but not alike enough to be taken: {', '.join(doubtful[:4])}."
+        )
     return sentences
 
 
@@ -165,7 +168,9 @@ def _fit(
     given: Mapping[str, int],
 ) -> Array:
     """Return the bundled head's vertices laid onto another head, (n, 3)."""
-    pairs = [(source[head.landmarks[name]], neutral[vertex]) for name, vertex in given.items() if name in head.landmarks]
+    pairs = [
+        (source[head.landmarks[name]], neutral[vertex]) for name, vertex in given.items() if name in head.landmarks
+    ]
     for shape in range(len(SHAPES)):
         ours, theirs = (_centre_of_motion(v, d[shape]) for v, d in ((source, head.deltas), (neutral, deltas)))
         if ours is not None and theirs is not None:

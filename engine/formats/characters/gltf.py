@@ -88,7 +88,9 @@ def _chunks(content: bytes, path: Path) -> Iterator[tuple[int, bytes]]:
     while place + 8 <= len(content):
         length, kind = struct.unpack_from("<II", content, place)
         if place + 8 + length > len(content):
-            raise FormatError(f"{path.name} is cut off: a part declares {length} bytes, {len(content) - place - 8} follow.")
+            raise FormatError(
+                f"{path.name} is cut off: a part declares {length} bytes, {len(content) - place - 8} follow."
+            )
         if kind not in seen:
             seen.add(kind)
             yield kind, content[place + 8 : place + 8 + length]
@@ -125,7 +127,9 @@ def _placed_meshes(scene: pygltflib.GLTF2, path: Path) -> Iterator[tuple[int, Ar
             yield nodes[index].mesh, np.eye(4) if nodes[index].skin is not None else matrix
         waiting += [(child, matrix) for child in reversed(nodes[index].children or [])]
     if len(seen) < len(nodes):
-        raise FormatError(f"{path.name} has a node that is its own ancestor: number {min(set(range(len(nodes))) - seen)}.")
+        raise FormatError(
+            f"{path.name} has a node that is its own ancestor: number {min(set(range(len(nodes))) - seen)}."
+        )
 
 
 def _matrix(node: pygltflib.Node) -> Array:

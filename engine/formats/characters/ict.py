@@ -47,10 +47,16 @@ def _check_declared(path: Path) -> None:
         for key in KEYS:
             with archive.open(f"{key}.npy") as file:
                 version = np.lib.format.read_magic(file)
-                reader = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+                reader = (
+                    np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+                )
                 shape, _, dtype = reader(file)
             size = int(np.prod(shape, dtype=object)) * dtype.itemsize
-            if size > archive.getinfo(f"{key}.npy").file_size or len(shape) and shape[0] > max(MAX_VERTICES, MAX_SHAPES):
+            if (
+                size > archive.getinfo(f"{key}.npy").file_size
+                or (len(shape)
+                and shape[0] > max(MAX_VERTICES, MAX_SHAPES))
+            ):
                 raise FormatError(f"{path.name} declares more data than it holds.")
 
 

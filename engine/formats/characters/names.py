@@ -83,7 +83,9 @@ def _guess(name: str) -> Match:
     # A shape's side is certain where it is written: likeness of the rest must not turn left into right.
     ending = "left" if key.endswith("left") else "right"
     pool = [known for known in _KNOWN if (known.endswith(ending) if side else not known.endswith(("left", "right")))]
-    likeness, best = max(((difflib.SequenceMatcher(None, key, known).ratio(), known) for known in pool), default=(0.0, ""))
+    likeness, best = max(
+        ((difflib.SequenceMatcher(None, key, known).ratio(), known) for known in pool), default=(0.0, "")
+    )
     return Match(name, _KNOWN[best], round(likeness, 3)) if likeness >= WORTH_SHOWING else Match(name, "", 0.0)
 
 

@@ -94,5 +94,7 @@ def _corners(line: bytes, number: int, vertices: int, path: Path) -> list[int]:
         raise FormatError(f"{path.name} has a face that is not made of numbers in line {number + 1}.") from None
     corners = [index - 1 if index > 0 else vertices + index for index in named]
     if len(corners) < 3 or 0 in named or not all(0 <= corner < vertices for corner in corners):
-        raise FormatError(f"{path.name} has a face in line {number + 1} that is not made of the {vertices} vertices of the file.")
+        raise FormatError(
+            f"{path.name} has a face in line {number + 1} that is not made of the {vertices} vertices of the file."
+        )
     return corners

@@ -48,7 +48,9 @@ def check(raw: RawCharacter) -> RawCharacter:
         raise FormatError(f"{raw.name} has all its vertices at one place.")
     for name, delta in raw.shapes.items():
         if delta.shape != raw.vertices.shape:
-            raise FormatError(f"{raw.name} has {len(delta)} vertices in its shape {name!r}, {count} in its neutral face.")
+            raise FormatError(
+                f"{raw.name} has {len(delta)} vertices in its shape {name!r}, {count} in its neutral face."
+            )
         if not np.isfinite(delta).all():
             raise FormatError(f"{raw.name} has a value that is not a finite number in its shape {name!r}.")
     return raw

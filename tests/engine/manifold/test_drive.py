@@ -36,7 +36,9 @@ def driver() -> MeshDriver:
 TURN = Rotation.from_euler("xyz", [25, -40, 10], degrees=True).as_matrix()
 
 
-@pytest.mark.parametrize("matrix", [TURN, 1.7 * TURN, TURN @ np.diag([-1.0, 1, 1])], ids=["rigid", "scaled", "mirrored"])
+@pytest.mark.parametrize(
+    "matrix", [TURN, 1.7 * TURN, TURN @ np.diag([-1.0, 1, 1])], ids=["rigid", "scaled", "mirrored"]
+)
 def test_a_common_motion_of_the_points_is_that_motion_of_the_whole_mesh(matrix: np.ndarray) -> None:
     moved = pose() @ matrix.T + [30, -200, 5]
     made = driver().drive(moved[None, skin_points()])[0]

@@ -87,7 +87,10 @@ def test_a_text_file_with_an_embedded_or_neighbouring_buffer_reads_the_same(tmp_
 def test_nodes_place_their_meshes_and_turn_their_shapes(tmp_path: Path) -> None:
     scene, binary = document()
     quarter = [0, 0, np.sqrt(0.5), np.sqrt(0.5)]  # about z: x becomes y
-    scene["nodes"] = [{"children": [1], "translation": [10, 0, 0]}, {"mesh": 0, "rotation": quarter, "scale": [2, 2, 2]}]
+    scene["nodes"] = [
+        {"children": [1], "translation": [10, 0, 0]},
+        {"mesh": 0, "rotation": quarter, "scale": [2, 2, 2]},
+    ]
     raw = gltf.read(glb(tmp_path / "a.glb", scene, binary))
     np.testing.assert_allclose(raw.vertices[1], [10, 2, 0], atol=1e-6)
     np.testing.assert_allclose(raw.shapes["jawOpen"][0], [2, 0, 0], atol=1e-6)
@@ -119,8 +122,14 @@ HOSTILE = {
     "count beyond the view": (_set("accessors", 1, "count", 60), "declares 120 bytes"),
     "count times stride overflows": (_set("bufferViews", 0, "byteStride", 2**62), "declares"),
     "count overflows": (_set("accessors", 0, "count", 2**63), "at most"),
-    "two gigabytes of nothing": (_set("accessors", 0, {"componentType": 5126, "count": 178956970, "type": "VEC3"}), "at most"),
-    "two gigabytes of corners": (_set("accessors", 1, {"componentType": 5125, "count": 2**29, "type": "SCALAR"}), "corners"),
+    "two gigabytes of nothing": (
+        _set("accessors", 0, {"componentType": 5126, "count": 178956970, "type": "VEC3"}),
+        "at most",
+    ),
+    "two gigabytes of corners": (
+        _set("accessors", 1, {"componentType": 5125, "count": 2**29, "type": "SCALAR"}),
+        "corners",
+    ),
     "buffer larger than the file": (_set("buffers", 0, "byteLength", 2**31), "declares a buffer"),
     "negative offset": (_set("bufferViews", 0, "byteOffset", -12), "impossible size"),
     "index beyond the vertices": (_set("accessors", 0, "count", 3), "names vertex 3"),
