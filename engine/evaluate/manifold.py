@@ -220,6 +220,6 @@ def _row(task: str, method: str, labels: int, errors: Array) -> Row:
 
 def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
     """Draw the paper's figures 6, 7, 8 and 10 and a row of faces like its figure 9."""
-    from engine.evaluate import manifold_figures
+    from engine.evaluate.manifold_figures import draw
 
-    return manifold_figures.draw(data, folder, report)
+    return draw(data, folder, report)

@@ -101,7 +101,7 @@ class MeshDriver:
             yield self._frame(np.asarray(frame, np.float64))
 
     def _frame(self, positions: Array) -> Array:
-        seen = np.isfinite(positions).all(axis=1)
+        seen = np.asarray(np.isfinite(positions).all(axis=1))
         rest = self._rest[self._points]
         if seen.sum() < FEWEST:
             raise EditError(f"A frame has only {int(seen.sum())} of {len(seen)} markers.", "Fill the gaps first.")
@@ -117,8 +117,7 @@ class MeshDriver:
         posed[self._solved] += (moved.T @ self._influence.T).T  # this way round no threads are woken
         self._carried.carry(posed, self._rest)
         posed = posed @ (pose.scale[0] * pose.turn[0])
-        posed += pose.shift[0]
-        return posed
+        return np.asarray(posed + pose.shift[0])
 
 
 def parts_of(triangles: npt.NDArray[np.integer], vertices: int) -> npt.NDArray[np.int64]:

@@ -53,7 +53,7 @@ def similar(points: Array, *, size: int) -> sp.csr_array:
     size = min(size, len(points))
     if size == 1:
         return sp.eye_array(1, format="csr")
-    _, nearest = cKDTree(points).query(points, k=size)
+    nearest: Indices = np.asarray(cKDTree(points).query(points, k=size)[1], np.int64)
     missed = ~(nearest == np.arange(len(points))[:, None]).any(axis=1)  # among more equals than `size`
     nearest[missed, -1] = np.flatnonzero(missed)
     nearest.sort(axis=1)

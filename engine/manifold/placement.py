@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
@@ -47,9 +49,14 @@ def place_points(
     graph = sp.csr_array((length, (start, end)), shape=edges.shape)
     still = np.where(where, (motions**2).sum(axis=(0, 2)), np.inf)
     chosen = [int(np.argmin(still))]
-    away = dijkstra(graph, indices=chosen[0])
+    away = _along(graph, chosen[0])
     while len(chosen) < count:
         away[~where] = -1.0
         chosen.append(int(np.argmax(np.where(np.isfinite(away), away, 1e12))))
-        away = np.minimum(np.where(where, away, np.inf), dijkstra(graph, indices=chosen[-1]))
+        away = np.minimum(np.where(where, away, np.inf), _along(graph, chosen[-1]))
     return np.array(chosen)
+
+
+def _along(graph: Any, start: int) -> Array:
+    """Return the shortest way along the mesh from one vertex to each, (n,)."""
+    return np.asarray(dijkstra(graph, indices=start), np.float64)

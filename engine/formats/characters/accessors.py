@@ -16,7 +16,7 @@ from engine.errors import FormatError
 from engine.formats.characters.raw import MAX_VERTICES
 from engine.take import Array
 
-TYPES = {
+TYPES: dict[int, np.dtype[Any]] = {
     5120: np.dtype("<i1"),
     5121: np.dtype("<u1"),
     5122: np.dtype("<i2"),
@@ -76,7 +76,7 @@ class Accessors:
             raise self._fault(f"has an accessor of the wrong kind: number {index}")
         return accessor
 
-    def _type(self, component: Any) -> np.dtype[Any]:
+    def _type(self, component: int) -> np.dtype[Any]:
         if component not in TYPES:
             raise self._fault(f"has numbers of an unknown kind: {component}")
         return TYPES[component]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from engine.character import Character, bundled
 from engine.errors import FormatError
@@ -72,7 +72,7 @@ def detect_frame(raw: RawCharacter) -> Frame:
     """
     size = np.ptp(raw.vertices, axis=0)
     jaw = [delta for name, delta in raw.shapes.items() if any(m.shape == "jawOpen" for m in match_names([name]))]
-    upright = np.sum(jaw, axis=(0, 1), dtype=np.float64)[1] < 0 if jaw else size[1] >= size[2]
+    upright = sum(float(delta[:, 1].sum()) for delta in jaw) < 0 if jaw else size[1] >= size[2]
     up = "y" if upright else "z"
     height = size[1 if up == "y" else 2]
     inside = [unit for unit, mm in UNITS_MM.items() if HEAD_MM[0] <= height * mm <= HEAD_MM[1]]
@@ -145,7 +145,7 @@ def transfer_landmarks(
     """
     head = bundled()
     source = head.neutral.astype(np.float64)
-    fitted = _fit(source, head, neutral, triangles, deltas, given)
+    fitted = _fit(source, head, neutral, deltas, given)
     found, away = dict(given), dict.fromkeys(given, 0.0)
     skin = np.flatnonzero(_largest_part(triangles, len(neutral)))
     size = np.linalg.norm(np.ptp(source, axis=0)) / 20
@@ -163,7 +163,6 @@ def _fit(
     source: Array,
     head: Character,
     neutral: Array,
-    triangles: npt.NDArray[np.int32],
     deltas: npt.NDArray[np.float32],
     given: Mapping[str, int],
 ) -> Array:
@@ -186,11 +185,12 @@ def _fit(
 
 def _to_surface(placed: Array, skin: npt.NDArray[np.int64], neutral: Array, *, rounds: int = 12) -> Array:
     """Refine a fit by pairing each vertex of the skin with the nearest one of the other head (ICP)."""
-    tree = cKDTree(neutral)
+    tree = KDTree(neutral)
     sample = placed[skin[:: max(1, len(skin) // 1500)]]
     laid = placed
     for _ in range(rounds):
-        away, nearest = tree.query(sample)
+        away, found = tree.query(sample)
+        nearest = np.asarray(found, np.int64)
         close = away <= np.percentile(away, 80)
         motion = fit_similarity(sample[close], neutral[nearest[close]][None], mirrored=False)
         sample, laid = motion.apply(sample)[0], motion.apply(laid)[0]

@@ -52,10 +52,8 @@ def _check_declared(path: Path) -> None:
                 )
                 shape, _, dtype = reader(file)
             size = int(np.prod(shape, dtype=object)) * dtype.itemsize
-            if (
-                size > archive.getinfo(f"{key}.npy").file_size
-                or (len(shape)
-                and shape[0] > max(MAX_VERTICES, MAX_SHAPES))
+            if size > archive.getinfo(f"{key}.npy").file_size or (
+                len(shape) and shape[0] > max(MAX_VERTICES, MAX_SHAPES)
             ):
                 raise FormatError(f"{path.name} declares more data than it holds.")
 

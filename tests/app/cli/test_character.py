@@ -5,11 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from app import cli
 from engine.character import bundled, load
+from engine.formats import read_take
 from engine.formats.characters.animation import MovingMesh, write
 from engine.performance import demo
+from engine.spacetime.layout import standard
 
 
 @pytest.fixture
@@ -51,15 +54,15 @@ def test_a_take_drives_a_mesh_without_shapes(foreign: Path, tmp_path: Path) -> N
     out = tmp_path / "driven.npz"
     arguments = ["drive", str(demo.BUNDLED), "--mesh", str(foreign / "neutral.obj"), "-o", str(out)]
     assert cli.run(arguments) == 0
-    from engine.formats import read_take
-
     take = read_take(demo.BUNDLED)
     with np.load(out, allow_pickle=False) as made:
         assert made["vertices"].shape == (len(take), len(bundled().neutral), 3)
         true = np.stack([bundled().vertices(weights) for weights in take.weights[::20]])
-        away = np.linalg.norm(made["vertices"][::20] - true, axis=2).mean()
-        still = np.linalg.norm(bundled().neutral - true, axis=2).mean()
-    assert away < 0.7 * still
+        points = bundled().neutral[standard(bundled()).vertices]
+        face = cKDTree(points).query(bundled().neutral)[0] < 15  # beyond the points nothing tells what the skin does
+        away = np.linalg.norm(made["vertices"][::20] - true, axis=2)[:, face].mean()
+        still = np.linalg.norm(bundled().neutral - true, axis=2)[:, face].mean()
+    assert away < 0.6 * still
 
 
 @pytest.mark.parametrize(
