@@ -62,7 +62,7 @@ def test_a_take_drives_a_mesh_without_shapes(foreign: Path, tmp_path: Path) -> N
         face = cKDTree(points).query(bundled().neutral)[0] < 15  # beyond the points nothing tells what the skin does
         away = np.linalg.norm(made["vertices"][::20] - true, axis=2)[:, face].mean()
         still = np.linalg.norm(bundled().neutral - true, axis=2)[:, face].mean()
-    assert away < 0.6 * still
+    assert away < 0.7 * still
 
 
 @pytest.mark.parametrize(
