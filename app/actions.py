@@ -31,8 +31,11 @@ class Action:
 
 ACTIONS: tuple[Action, ...] = (
     Action("open_take", "Open…", "File", ("Ctrl+O",), "Open", twin="retake FILE"),
-    Action("save", "Save", "File", ("Ctrl+S",), "Save", twin="retake edit -o"),
-    Action("save_as", "Save as…", "File", ("Ctrl+Shift+S",), twin="retake edit -o"),
+    Action("save", "Save project", "File", ("Ctrl+S",), "Save", twin="commands read projects and write takes"),
+    Action("save_as", "Save project as…", "File", ("Ctrl+Shift+S",), twin="commands read projects and write takes"),
+    Action("export", "Export take…", "File", ("Ctrl+E",), "Export", twin="retake edit -o"),
+    Action("attach_audio", "Attach sound…", "File", twin="a file beside the take under its name is found"),
+    Action("attach_video", "Attach a reference video…", "File", twin="a file beside the take under its name is found"),
     Action("close", "Quit", "File", ("Ctrl+Q",), twin="ends the program"),
     Action("undo", "Undo", "Edit", ("Ctrl+Z",), "↶", twin="a command writes a new file; the old one stays"),
     Action("redo", "Redo", "Edit", ("Ctrl+Shift+Z", "Ctrl+Y"), "↷", twin="a command writes a new file"),
@@ -57,6 +60,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("stop", "Stop", "Playback", ("Shift+K",)),
     Action("play_forwards", "Play forwards", "Playback", ("L",)),
     Action("loop", "Loop", "Playback", ("Ctrl+L",), "Loop", True),
+    Action("mute", "Mute", "Playback", ("Ctrl+M",), checkable=True),
     Action("next_frame", "Next frame", "Playback", ("Right",)),
     Action("previous_frame", "Previous frame", "Playback", ("Left",)),
     Action("first_frame", "First frame", "Playback", ("Shift+Left",)),
@@ -76,7 +80,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("about", "About Retake", "Help", (), twin="retake --version"),
 )
 TOOLBAR: tuple[tuple[str, ...], ...] = (
-    ("open_take", "save"),
+    ("open_take", "save", "export"),
     ("undo", "redo"),
     ("drag_tool", "draw_tool", "scale_tool", "pin_tool", "mark_tool"),
     ("fill", "clean_tool"),

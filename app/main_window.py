@@ -19,7 +19,6 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import (
     QApplication,
-    QFileDialog,
     QFrame,
     QHBoxLayout,
     QLabel,
@@ -41,15 +40,19 @@ from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
 from app.curves.tools import TOOLS
 from app.edit_actions import EditActions
+from app.file_actions import FileActions
 from app.inference import Inference
 from app.inspector.brush import BrushSection
 from app.inspector.facts import FactsSection
 from app.inspector.panel import Inspector
 from app.inspector.smooth import SmoothSection
 from app.inspector.value import ValueSection
+from app.keeper import Keeper
 from app.notices import Notices
 from app.pins.section import PinsSection
+from app.playback.media import Media
 from app.preview.panel import PreviewPanel
+from app.preview.reference import ReferencePanel
 from app.session import Change, Session
 from app.settings import Settings
 from app.spans.filling import Filling
@@ -58,8 +61,6 @@ from app.theme import GRID
 from app.time_actions import TimeActions
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
-from engine.errors import EngineError
-from engine.formats import FORMATS, read_take, write_take
 from engine.take import Take, timecode
 
 HINTS = "Drag any curve up or down: the face follows.   Hatched: frames the tracker lost.   Space plays."
@@ -72,17 +73,29 @@ class MainWindow(QMainWindow):
     ----------
     take, path : what to open, and the file it came from
     settings : what is remembered
+    unsaved : the folder for unsaved work; the user's own without one
     """
 
-    def __init__(self, take: Take, path: Path | None = None, settings: Settings | None = None) -> None:
+    def __init__(
+        self,
+        take: Take,
+        path: Path | None = None,
+        settings: Settings | None = None,
+        *,
+        unsaved: Path | None = None,
+    ) -> None:
         super().__init__()
         self.settings = settings or Settings()
         self.colours = theme.LIGHT if self.settings.light else theme.DARK
         self.session = Session(take)
+        self.keeper = Keeper(self.session, unsaved)
         self.inference = Inference(self.session)
         self.transport = Transport(self.session)
+        self.media = Media(self.session, self.transport)
+        self.files = FileActions(self.session, self.keeper, self.media, self.settings, self)
         self.notices = Notices()
         self.preview = PreviewPanel(self.session, self.inference)
+        self.reference = ReferencePanel(self.session)
         self.curves = CurvesPanel(self.session, self.inference, self.colours)
         self.timeline = Timeline(self.session, self.colours, gutter_px=GUTTER_PX)
         self.filling = Filling(self.session)
@@ -103,14 +116,14 @@ class MainWindow(QMainWindow):
         )
         self.inspector = Inspector(self.session, sections)
         self._latencies_ms: list[float] = []
-        self._saved_view = ""
         self.setAcceptDrops(True)
         self._make_actions()
         self._lay_out()
         self._connect()
         self.setStyleSheet(theme.style_sheet(self.colours))
         self.resize(1440, 900)
-        self.show_take(take, path)
+        self.session.open(take, path)
+        self._show_opened()
 
     # --- building
 
@@ -151,7 +164,8 @@ class MainWindow(QMainWindow):
             self.actions_by_name[entry.name].setShortcuts(shortcuts)
 
     def _do(self, name: str, *_: bool) -> None:
-        owner = next(each for each in (self, self.edits, self.time) if name in type(each).__dict__)
+        owners = (self, self.files, self.edits, self.time)
+        owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
 
     def _toolbar(self) -> QFrame:
@@ -188,6 +202,7 @@ class MainWindow(QMainWindow):
         return bar
 
     def _lay_out(self) -> None:
+        self.preview.add_beneath(self.reference)
         lanes = QFrame()
         lanes.setProperty("panel", True)
         stack = QVBoxLayout(lanes)
@@ -247,7 +262,8 @@ class MainWindow(QMainWindow):
         self.session.changed.connect(self._on_change)
         self.inference.failed.connect(self.notices.tell)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        self.preview.failed.connect(self.notices.tell)
+        for part in (self.preview, self.media, self.reference):
+            part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self._timed)
         self.transport.changed.connect(self._show_transport)
         self.value.close_here.connect(self.edits.close_here)
@@ -259,6 +275,9 @@ class MainWindow(QMainWindow):
         self.edits.told.connect(self.status["notice"].setText)
         self.time.looping = self.actions_by_name["loop"].isChecked
         self.filling.failed.connect(self.notices.tell)
+        self.keeper.failed.connect(self.notices.tell)
+        self.files.told.connect(self.notices.tell)
+        self.files.opened.connect(self._show_opened)
         self.filling.changed.connect(self._show_filling)
         self.spans.refused.connect(self.notices.tell)
         self.timeline.marked.connect(self.spans.mark)
@@ -276,80 +295,24 @@ class MainWindow(QMainWindow):
         super().showEvent(event)
         QTimer.singleShot(0, self.inference.warm_up)
 
-    # --- opening and saving
+    # --- opening and closing
 
-    def show_take(self, take: Take, path: Path | None) -> None:
-        """Open a take in place of the one that is open."""
+    def load(self, path: Path) -> bool:
+        """Open a take or a project; returns whether it is open now."""
+        return self.files.load(path)
+
+    def _show_opened(self) -> None:
         self.transport.run(0.0)
-        self.session.open(take, path)
         self.notices.hide()
-        self.status["notice"].setText(" ".join(take.notices))
+        self.status["notice"].setText(" ".join(self.session.take.notices))
         self._show_title()
-
-    def load(self, path: Path, *_: object) -> bool:
-        """Open a file; what is open stays as it was where the file cannot be read."""
-        try:
-            take = read_take(path)
-        except EngineError as error:
-            self.notices.tell(error.sentence, error.advice)
-            return False
-        if not self._may_lose_edits():
-            return False
-        self.settings.remember(path)
-        self.show_take(take, path)
-        return True
-
-    def _may_lose_edits(self) -> bool:
-        if not self.session.edited:
-            return True
-        kinds = QMessageBox.StandardButton
-        answer = QMessageBox.question(
-            self,
-            "Unsaved edits",
-            f"{self.session.name} has edits that are not saved.",
-            kinds.Save | kinds.Discard | kinds.Cancel,
-        )
-        return answer == kinds.Discard or (answer == kinds.Save and self.save())
-
-    def open_take(self) -> None:
-        """Choose a file to open."""
-        endings = " ".join(f"*{ending}" for entry in FORMATS for ending in entry.endings)
-        name, _ = QFileDialog.getOpenFileName(self, "Open a take", "", f"Takes ({endings})")
-        if name:
-            self.load(Path(name))
-
-    def save(self) -> bool:
-        """Write to the file it was saved to before; the recording itself is never overwritten unasked."""
-        if self._saved_view and self.session.path is not None:
-            return self._write(self.session.path)
-        return self.save_as()
-
-    def save_as(self) -> bool:
-        """Choose a file and write the take."""
-        current = self.session.path or Path(f"{self.session.take.name}.csv")
-        suggestion = str(current.with_name(f"{current.stem}_edited.csv"))
-        name, _ = QFileDialog.getSaveFileName(self, "Save the take", suggestion, "Live Link Face CSV (*.csv)")
-        return bool(name) and self._write(Path(name))
-
-    def _write(self, path: Path) -> bool:
-        path = path if path.suffix else path.with_suffix(".csv")
-        try:
-            write_take(self.session.take, path)
-        except EngineError as error:
-            self.notices.tell(error.sentence, error.advice)
-            return False
-        self.session.path, self._saved_view = path, str(path)
-        self.session.undo.setClean()
-        self.settings.remember(path)
-        self._show_title()
-        return True
 
     def _fill_recent(self) -> None:
         self._recent.clear()
         for name in self.settings.recent:
             entry = self._recent.addAction(Path(name).name)
             entry.setToolTip(name)
-            entry.triggered.connect(partial(self.load, Path(name)))
+            entry.triggered.connect(partial(self.files.load, Path(name)))
         self._recent.setEnabled(bool(self.settings.recent))
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
@@ -361,11 +324,11 @@ class MainWindow(QMainWindow):
         """Open the first file that was dropped."""
         paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
         if paths:
-            self.load(paths[0])
+            self.files.take_in(paths[0])
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask for unsaved edits, then end the threads."""
-        if not self._may_lose_edits():
+        if not self.files.may_lose_edits():
             event.ignore()
             return
         self.shut_down()
@@ -378,7 +341,10 @@ class MainWindow(QMainWindow):
             application.removeEventFilter(self)
         self.transport.run(0.0)
         self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
+        self.keeper.close()
         self.inference.close()
+        self.media.close()
+        self.reference.close_reader()
         self.filling.close()
         self.preview.close_renderer()
 
@@ -392,6 +358,10 @@ class MainWindow(QMainWindow):
         # Enter belongs to whatever is typed into, unless there is a variant to keep
         self.actions_by_name["accept"].setEnabled(bool(self.filling.variants))
         self.actions_by_name["fill"].setEnabled(not self.filling.busy)
+
+    def mute(self) -> None:
+        """Play with or without sound."""
+        self.media.mute(self.actions_by_name["mute"].isChecked())
 
     def _show_tool(self) -> None:
         for name in TOOLS:
@@ -474,7 +444,8 @@ class MainWindow(QMainWindow):
 
     def _show_saved(self) -> None:
         self.setWindowModified(self.session.edited)
-        self.status["saved"].setText("edited" if self.session.edited else "saved" if self._saved_view else "")
+        saved = "saved" if self.keeper.path else ""
+        self.status["saved"].setText("edits not saved yet" if self.session.edited else saved)
 
     def _show_undo(self, *_: int) -> None:
         stack = self.session.undo

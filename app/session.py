@@ -13,6 +13,7 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from engine.controls import CONTROLS, bundled_measurer
+from engine.formats.audio import Audio
 from engine.project import Contents, Marks, Replayed, Span
 from engine.take import Array, Take, runs
 
@@ -36,6 +37,7 @@ class Change(Flag):
     LANES = auto()  # which lanes there are
     TOOL = auto()
     SAVED = auto()
+    MEDIA = auto()  # sound or reference video
     MARKS = auto()  # spans, pins, notes, media or the verdict
 
 
@@ -57,6 +59,8 @@ class Session(QObject):
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
     radius_frames, strength, exact : the Drag tool's brush
+    audio, audio_offset_s : the recording of the sound, and the time in the take at which it begins
+    video, video_offset_s : the file of the reference video, likewise
     marks : spans, pins, notes, media and verdict
     """
 
@@ -87,6 +91,9 @@ class Session(QObject):
         self.radius_frames = max(2, round(BRUSH_S * take.fps))
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
+        self.audio: Audio | None = None
+        self.video: Path | None = None
+        self.audio_offset_s = self.video_offset_s = 0.0
         self.undo.clear()
         self.changed.emit(Change.TAKE)
 
@@ -233,6 +240,16 @@ class Session(QObject):
         if frames != self.selection:
             self.selection = frames
             self.changed.emit(Change.SELECTION)
+
+    def attach_audio(self, audio: Audio | None, offset_s: float = 0.0) -> None:
+        """Play a recording along with the take, or none."""
+        self.audio, self.audio_offset_s = audio, offset_s
+        self.changed.emit(Change.MEDIA)
+
+    def attach_video(self, path: Path | None, offset_s: float = 0.0) -> None:
+        """Show a reference video beside the face, or none."""
+        self.video, self.video_offset_s = path, offset_s
+        self.changed.emit(Change.MEDIA)
 
     def choose_lane(self, lane: int) -> None:
         """Work on another curve."""

@@ -7,11 +7,11 @@ import sys
 
 import typer
 
-from app.cli import smooth, spacetime, tables, takes, training
+from app.cli import character, clean, smooth, spacetime, tables, takes, training
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 
-FAMILIES = (takes, smooth, spacetime, tables, training)
+FAMILIES = (takes, smooth, spacetime, clean, character, tables, training)
 
 
 def build() -> typer.Typer:

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from engine.errors import EngineError
 
-NETWORKS = ("regress", "regress_baselines", "regress_study")
+NETWORKS = ("regress", "regress_baselines", "regress_study", "clean")
 ELSEWHERE = {  # the others are engine.NAME.train
     "regress_baselines": "engine.evaluate.baselines.train",
     "regress_study": "engine.evaluate.study",

@@ -187,11 +187,15 @@ class PreviewPanel(QFrame):
         foot.addWidget(hint)
         foot.addStretch(1)
         foot.addWidget(self._frame_label)
-        column = QVBoxLayout(self)
+        self._column = column = QVBoxLayout(self)
         column.setContentsMargins(GRID, GRID, GRID, GRID)
         column.addLayout(row)
         column.addWidget(self.face, 1)
         column.addLayout(foot)
+
+    def add_beneath(self, widget: QWidget) -> None:
+        """Put another panel beneath the face."""
+        self._column.addWidget(widget)
 
     def show_view(self, name: str) -> None:
         """Show before, after, split or difference."""

@@ -1,4 +1,4 @@
-"""The ruler and the spans lane above the curves, and the scroll bar beneath them."""
+"""The ruler, the waveform and the spans lane above the curves, and the scroll bar beneath them."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
 
 from app.session import Change, Session
 from app.theme import GRID, Palette
+from app.timeline.waveform import draw_waveform
 from engine.take import timecode
 
-RULER_PX, SPANS_PX, LABEL_PX = 26, 22, 76
+RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 76
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 
@@ -44,13 +45,19 @@ class Timeline(QWidget):
 
     def sizeHint(self) -> QSize:
         """As high as its lanes."""
-        return QSize(400, RULER_PX + SPANS_PX)
+        return QSize(400, self._spans_top() + SPANS_PX)
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.VIEW | Change.PLAYHEAD | Change.SELECTION | Change.MARKS):
+        if change & (Change.TAKE | Change.MEDIA):
+            self.updateGeometry()
+        shown = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
+        if change & shown:
             self.update()
 
     # --- geometry
+
+    def _spans_top(self) -> int:
+        return RULER_PX + (AUDIO_PX if self._session.audio is not None else 0)
 
     def _span_px(self) -> float:
         return max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
@@ -68,14 +75,17 @@ class Timeline(QWidget):
     # --- drawing
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw ruler, spans, selection and playhead."""
+        """Draw ruler, waveform, spans, selection and playhead."""
         painter = QPainter(self)
         painter.setPen(QColor(self._colours.quiet))
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-        painter.drawText(QRectF(GRID, RULER_PX, self._gutter, SPANS_PX), left, "spans")
+        painter.drawText(QRectF(GRID, self._spans_top(), self._gutter, SPANS_PX), left, "spans")
+        if self._session.audio is not None:
+            painter.drawText(QRectF(GRID, RULER_PX, self._gutter, AUDIO_PX), left, "audio")
         painter.setClipRect(QRectF(self._gutter, 0, self._span_px(), self.height()))
         self._draw_selection(painter)
         self._draw_ticks(painter)
+        self._draw_audio(painter)
         self._draw_spans(painter)
         x = self.x_of(self._session.playhead)
         painter.setPen(QPen(QColor(self._colours.text), 1))
@@ -111,6 +121,13 @@ class Timeline(QWidget):
             painter.drawLine(int(x), 20, int(x), RULER_PX)
             index += 1
 
+    def _draw_audio(self, painter: QPainter) -> None:
+        session = self._session
+        if session.audio is not None:
+            first_s, last_s = (frame / session.take.fps - session.audio_offset_s for frame in session.view)
+            box = QRectF(self._gutter, RULER_PX + 2, self._span_px(), AUDIO_PX - 4)
+            draw_waveform(painter, session.audio, box, (first_s, last_s), self._colours.quiet)
+
     def _draw_spans(self, painter: QPainter) -> None:
         warning = QColor(self._colours.warning)
         tint = QColor(warning)
@@ -119,7 +136,7 @@ class Timeline(QWidget):
             left, right = self.x_of(span.start - 0.5), self.x_of(span.stop - 0.5)
             if right < self._gutter or left > self.width():
                 continue
-            box = QRectF(left, RULER_PX + 3, max(3.0, right - left), SPANS_PX - 7)
+            box = QRectF(left, self._spans_top() + 3, max(3.0, right - left), SPANS_PX - 7)
             painter.fillRect(box, tint)
             painter.fillRect(box, QBrush(warning, Qt.BrushStyle.BDiagPattern))
             painter.setPen(QPen(warning, 1))
@@ -139,7 +156,7 @@ class Timeline(QWidget):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         frame = round(self.frame_at(event.position().x()))
-        in_lane = event.position().y() > RULER_PX
+        in_lane = event.position().y() > self._spans_top()
         hit = [span for span in self._session.marks.spans if span.start <= frame < span.stop] if in_lane else []
         if hit:
             self._session.select((hit[0].start, hit[0].stop))

@@ -6,10 +6,11 @@ import pytest
 
 from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
 from app.edit_actions import EditActions
+from app.file_actions import FileActions
 from app.main_window import MainWindow
 from app.time_actions import TimeActions
 
-OWNERS = (MainWindow, EditActions, TimeActions)
+OWNERS = (MainWindow, FileActions, EditActions, TimeActions)
 
 
 @pytest.mark.parametrize("preset", list(PRESETS))

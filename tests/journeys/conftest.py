@@ -15,7 +15,9 @@ from engine.performance import demo
 @pytest.fixture
 def window(qtbot: QtBot, tmp_path: Path) -> Iterator[MainWindow]:
     """The window on the demo take, networks loaded and first picture drawn."""
-    opened = MainWindow(read_take(demo.BUNDLED), demo.BUNDLED, Settings(tmp_path / "settings.ini"))
+    opened = MainWindow(
+        read_take(demo.BUNDLED), demo.BUNDLED, Settings(tmp_path / "settings.ini"), unsaved=tmp_path / "unsaved"
+    )
     with qtbot.waitSignals([opened.inference.ready, opened.preview.drawing.done], timeout=60_000):
         opened.show()
     settled(qtbot, opened)
