@@ -1,7 +1,7 @@
 """Training the regressor, then the autoencoder on top of it (BSBS19 sections 4.2 and 4.3).
 
 The last epoch is kept, not the best: the validation frames are of the people trained on, and would choose the epoch that
-knows them best. The rates, epochs and augmentation of `RECIPES` come from leaving out one training take at a time.
+knows them best. Rates, epochs and augmentation of `RECIPES` come from training takes left out and from those frames.
 """
 
 from __future__ import annotations
