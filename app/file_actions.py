@@ -39,10 +39,12 @@ class FileActions(QObject):
 
     def load(self, path: Path, *_: object) -> bool:
         """Open a take or a project; what is open stays as it was where the file cannot be read."""
-        if not self.may_lose_edits():
-            return False
+        is_project = path.suffix.lower() == PROJECT
         try:
-            if path.suffix.lower() == PROJECT:
+            take = None if is_project else read_take(path)
+            if not self.may_lose_edits():
+                return False
+            if take is None:
                 self._keeper.open(path)
                 if self._keeper.path is None:
                     self.told.emit(
@@ -50,7 +52,7 @@ class FileActions(QObject):
                         "Save it under another name.",
                     )
             else:
-                self._session.open(read_take(path), path)
+                self._session.open(take, path)
         except EngineError as error:
             self.told.emit(error.sentence, error.advice)
             return False

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from PySide6.QtWidgets import QMessageBox
 from pytestqt.qtbot import QtBot
 
 from app.main_window import MainWindow
@@ -25,6 +26,17 @@ def window(qtbot: QtBot, tmp_path: Path) -> Iterator[MainWindow]:
     opened.session.undo.setClean()
     opened.close()
     opened.deleteLater()
+
+
+@pytest.fixture(autouse=True)
+def no_dialog(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A question that no test expects would wait for ever."""
+
+    def refuse(*words: object) -> None:
+        raise AssertionError(f"an unexpected question: {words[-2:]}")
+
+    monkeypatch.setattr(QMessageBox, "question", refuse)
+    monkeypatch.setattr(QMessageBox, "exec", refuse)
 
 
 def settled(qtbot: QtBot, window: MainWindow) -> None:
