@@ -63,7 +63,7 @@ from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
 from engine.take import Take, timecode
 
-HINTS = "Drag any curve up or down: the face follows.   Hatched: frames the tracker lost.   Space plays."
+HINTS = "Drag a curve: the face follows  ·  F fills what is hatched  ·  Space plays"
 
 
 class MainWindow(QMainWindow):

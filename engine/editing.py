@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 import torch
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from engine import exact
 from engine.controls import CONTROLS, bundled_measurer, control_index
@@ -22,10 +23,8 @@ EYE_SHAPES = np.array([name.startswith("eye") for name in SHAPES])
 LOWER_SHAPES = np.array([name.startswith(("jaw", "mouth", "cheekPuff", "noseSneer")) for name in SHAPES])
 FREE = {"lower": LOWER_SHAPES, "eyelids": EYE_SHAPES & np.array(["Look" not in name for name in SHAPES])}
 FEATHER_S = 0.5  # how far beyond the changed frames a face may still move, easing into the original
-CONTACT_MM, CONTACT_FROM_MM = (
-    1.0,
-    4.0,
-)  # asked this close, lips or lids are meant to touch; it begins to count from there
+HOLD_S = 0.15  # over which a contact comes and goes
+CONTACT_MM, CONTACT_FROM_MM = 1.0, 6.0  # lips or lids asked this close are meant to touch
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +139,7 @@ class Dragger:
         weights = self.take.weights[first:last].copy()
         if changed.any():
             weights = self._composite(weights, wanted, first, changed)
-            weights = _land(weights, self.controls[first:last], wanted, exact_curve=exact_curve)
+            weights = _land(weights, self.controls[first:last], wanted, fps=self.take.fps, exact_curve=exact_curve)
         return Patch(first, weights, wanted, bundled_measurer().measure(weights))
 
     def _composite(self, weights: Array, wanted: Array, first: int, changed: np.ndarray) -> Array:
@@ -173,17 +172,23 @@ class Dragger:
         return interpolate(made - self._known[1], np.arange(first, last, dtype=np.float64) * per_frame - start)
 
 
-def _land(weights: Array, measured: Array, wanted: Array, *, exact_curve: bool) -> Array:
+def _eased_in_time(hold: Array, *, frames: int) -> Array:
+    """Let what holds at a frame, (frames, n), come and go over the frames beside it, and hold no less there."""
+    window = 2 * frames + 1
+    return np.asarray(uniform_filter1d(maximum_filter1d(hold, window, axis=0), window, axis=0))
+
+
+def _land(weights: Array, measured: Array, wanted: Array, *, fps: float, exact_curve: bool) -> Array:
     """Project frames onto the asked values that must be met, one area of the face at a time.
 
-    A contact takes hold gradually as the asked distance gets small; a threshold would make the lips pop shut.
+    A contact takes hold gradually, as the asked distance gets small and over time; else the lips would pop shut.
     """
     measurer = bundled_measurer()
     for area, free in FREE.items():
         columns = np.array([index for index, control in enumerate(CONTROLS) if control.area == area])
         moved = wanted[:, columns] != measured[:, columns]
         hold = ease((CONTACT_FROM_MM - wanted[:, columns]) / (CONTACT_FROM_MM - CONTACT_MM))
-        share = moved * (1.0 if exact_curve else hold)
+        share = moved * (1.0 if exact_curve else _eased_in_time(hold * moved, frames=round(HOLD_S * fps)))
         columns, share = columns[share.any(axis=0)], share[:, share.any(axis=0)]
         rows = share.any(axis=1)
         if rows.any():

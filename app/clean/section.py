@@ -65,7 +65,6 @@ class CleanSection(Section):
 
         def verb(dragger: Dragger) -> Patch:
             from engine.clean.takes import clean
-
             from engine.editing import Patch
 
             wanted = (dragger.take, frames)
