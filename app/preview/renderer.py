@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 
 from app.preview.camera import FIELD_OF_VIEW_DEG, Camera
 from app.preview.lighting import Lighting, to_linear
@@ -19,6 +21,7 @@ from engine.take import Array
 if sys.platform == "linux":
     os.environ.setdefault("PYOPENGL_PLATFORM", "egl")
 
+Triangles = npt.NDArray[np.int32]  # (n, 3)
 Picture = npt.NDArray[np.uint8]  # (height, width, 3) sRGB
 GROUND = (0x23, 0x27, 0x2E)
 _GROUND = np.array(GROUND, np.float32) / 255.0
@@ -68,16 +71,20 @@ class Renderer:
         self._low, self._high = _framed(character)
         rise = (neutral[:, 1] - neutral[:, 1].min()) / (NECK_FADE * (self._high[1] - self._low[1]))
         self._solid = np.clip(rise, 0.0, 1.0)[:, None].astype(np.float32)
-        coloured = np.ones((len(neutral), 4), np.float32)
-        self._primitive = pyrender.Primitive(
-            positions=neutral.astype(np.float32),
-            indices=character.triangles.astype(np.uint32),
-            color_0=coloured,
-            # floats: integers would be taken as 0..255 and draw black
-            material=pyrender.MetallicRoughnessMaterial(baseColorFactor=[1.0, 1.0, 1.0, 1.0], doubleSided=True),
-        )
+        closed, open_ = _split(character)
+        self._primitives = [
+            pyrender.Primitive(
+                positions=neutral.astype(np.float32),
+                indices=triangles.astype(np.uint32),
+                color_0=np.ones((len(neutral), 4), np.float32),
+                # floats: integers would be taken as 0..255 and draw black
+                material=pyrender.MetallicRoughnessMaterial(baseColorFactor=[1.0, 1.0, 1.0, 1.0], doubleSided=both),
+            )
+            for triangles, both in ((closed, False), (open_, True))
+            if len(triangles)
+        ]
         self._scene = pyrender.Scene(bg_color=[*(value / 255 for value in GROUND), 1.0])
-        self._scene.add(pyrender.Mesh([self._primitive]))
+        self._scene.add(pyrender.Mesh(self._primitives))
         self._camera = pyrender.PerspectiveCamera(yfov=np.radians(FIELD_OF_VIEW_DEG), znear=50.0, zfar=6000.0)
         self._camera_node = self._scene.add(self._camera, pose=np.eye(4))
         self._vertex_rows = np.ones((len(neutral), 7), np.float32)  # position, colour: the layout of the buffer
@@ -125,20 +132,40 @@ class Renderer:
 
     def _upload(self) -> None:
         """Write the vertex buffer in place: pyrender itself reads positions only once, before the first drawing."""
-        if not self._primitive._buffers:
-            self._primitive.positions = self._vertex_rows[:, :3].copy()
-            self._primitive.color_0 = self._vertex_rows[:, 3:].copy()
-            return
         from OpenGL.GL import GL_ARRAY_BUFFER, glBindBuffer, glBufferSubData
 
         self._target._platform.make_current()
-        glBindBuffer(GL_ARRAY_BUFFER, self._primitive._buffers[0])
-        glBufferSubData(GL_ARRAY_BUFFER, 0, self._vertex_rows.nbytes, self._vertex_rows)
+        for primitive in self._primitives:
+            if not primitive._buffers:
+                primitive.positions = self._vertex_rows[:, :3].copy()
+                primitive.color_0 = self._vertex_rows[:, 3:].copy()
+                continue
+            glBindBuffer(GL_ARRAY_BUFFER, primitive._buffers[0])
+            glBufferSubData(GL_ARRAY_BUFFER, 0, self._vertex_rows.nbytes, self._vertex_rows)
         glBindBuffer(GL_ARRAY_BUFFER, 0)
 
     def close(self) -> None:
         """Give back what OpenGL holds."""
         self._target.delete()
+
+
+def _split(character: Character) -> tuple[Triangles, Triangles]:
+    """Return the triangles of the largest part, whose insides need not be drawn, and all others.
+
+    Leaving out what faces away saves a third of the time on software GL. A part that is wound inwards would vanish,
+    and small parts such as brows and lashes are sheets that are seen from both sides: those are drawn whole.
+    """
+    triangles, vertices = character.triangles, character.neutral.astype(np.float64)
+    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]]])
+    links = sparse.coo_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(vertices),) * 2)
+    _, part = connected_components(links, directed=False)
+    of_triangle = part[triangles[:, 0]]
+    largest = of_triangle == np.bincount(of_triangle).argmax()
+    corners = vertices[triangles[largest]] - vertices.mean(axis=0)
+    volume = np.einsum("tx,tx->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    if volume <= 0:
+        largest[:] = False
+    return triangles[largest], triangles[~largest]
 
 
 def _framed(character: Character) -> tuple[Array, Array]:
