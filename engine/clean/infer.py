@@ -18,6 +18,7 @@ from engine.take import MODEL_FPS, SHAPES
 Floats = npt.NDArray[np.float32]
 _SHAPES = len(SHAPES)
 BELIEVABLE = (-1.0, 2.0)  # a weight beyond these is a fault of the tracker or of the network, not a face
+FROZEN_S = 1.0  # a frame that comes again for longer than this is a tracker that stands, not a face that rests
 STEP_S = (1e-3, 0.5)  # a longer gap is taken for this long: no face extrapolates further
 
 
@@ -30,6 +31,9 @@ class CleanState:
     weights : (52,) float32, the estimate
     velocity : (52,) float32, its derivative per second
     hidden, cell : (layers, hidden) float32 of the recurrent layers
+    landing : the way back after a lost run
+    seen : (52,) float32, the last frame with a face
+    frozen_s : for how long the tracker has sent that very frame, seconds
     """
 
     weights: Floats
@@ -37,6 +41,8 @@ class CleanState:
     hidden: Floats
     cell: Floats
     landing: Landing
+    seen: Floats
+    frozen_s: float = 0.0
 
     @property
     def shown(self) -> Floats:
@@ -73,7 +79,7 @@ class Cleaner:
         """Return the state at rest on a first frame, (52,)."""
         still = np.zeros((self._config.layers, self._config.hidden), np.float32)
         first = np.clip(weights, 0.0, 1.0).astype(np.float32)
-        return CleanState(first, np.zeros(_SHAPES, np.float32), still, still, no_landing(_SHAPES))
+        return CleanState(first, np.zeros(_SHAPES, np.float32), still, still, no_landing(_SHAPES), first)
 
     def step(self, seen: npt.ArrayLike | None, step_s: float, state: CleanState) -> CleanState:
         """Advance one frame: state in, state out.
@@ -98,10 +104,23 @@ class Cleaner:
         rate, offset, motion = (self._leave[0] @ x + self._leave[1]).reshape(3, _SHAPES)
         follow = -np.expm1(-step * np.float32(_RATE) * np.logaddexp(np.float32(0), rate)) * present
         moved = state.weights + follow * (innovation + np.float32(_OFFSET) * offset) + step * motion
+        frozen_s = 0.0
+        if frame is not None and np.array_equal(frame, state.seen):
+            frozen_s = state.frozen_s + float(step)
+            moved = state.weights + np.float32(_awake(frozen_s)) * (moved - state.weights)
         weights = np.clip(moved, 0.0, 1.0)
         jump = weights - state.weights
         landing = advance(state.landing, jump, state.velocity, float(step), present=frame is not None)
-        return CleanState(weights, jump / step, hidden, cell, landing)
+        last = state.seen if frame is None else frame
+        return CleanState(weights, jump / step, hidden, cell, landing, last, frozen_s)
+
+
+def _awake(frozen_s: float) -> float:
+    """Return how much the estimate still moves, 1..0, when the tracker has long sent one and the same frame.
+
+    A living face is never quite still; a frozen stream would otherwise leave the network circling round it for ever.
+    """
+    return float(np.exp(-max(0.0, frozen_s - FROZEN_S) / FROZEN_S))
 
 
 def believable(seen: npt.ArrayLike | None) -> Floats | None:
