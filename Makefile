@@ -1,7 +1,8 @@
 # Two commands matter: `make run` (the window, or the main job when there is no display) and `make test`.
 VENV := .venv
 PYTHON := $(VENV)/bin/python
-APT := libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri libgles2 libxkbcommon0 libdbus-1-3 libfontconfig1 fonts-dejavu-core
+APT := libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri libgles2 libxkbcommon0 libdbus-1-3 libfontconfig1 fonts-dejavu-core \
+  libxkbcommon-x11-0 libxcb-cursor0 libxcb-icccm4 libxcb-image0 libxcb-keysyms1 libxcb-render-util0 libxcb-shape0 libxcb-xkb1
 STAMP := $(VENV)/.installed
 
 .PHONY: run test lint setup clean
@@ -18,7 +19,7 @@ $(STAMP): pyproject.toml Makefile
 	touch $(STAMP)
 
 run: setup
-	$(PYTHON) -m app.main_job $(TAKE)
+	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then $(PYTHON) -m app $(TAKE); else $(PYTHON) -m app.main_job $(TAKE); fi
 
 lint: setup
 	$(PYTHON) -m ruff check .

@@ -1,4 +1,4 @@
-"""What `make run` does without a display: close the lips over a span of a take and write the result."""
+"""What `make run` does without a display: close the lips over a span of a take, and show what became of it."""
 
 from __future__ import annotations
 
@@ -7,30 +7,41 @@ from pathlib import Path
 
 import numpy as np
 
-from engine.controls import CONTROL_INDEX
-from engine.editing import Edit, ask, drag_exact
+from app.preview import movie
+from engine.controls import CONTROL_INDEX, measure
+from engine.editing import Patch, edit_control
 from engine.errors import EngineError
 from engine.formats import read_take, write_take
 from engine.performance import demo
 from engine.take import Take
 
 SPAN_FRAMES = 20
+MOVIE_MARGIN_FRAMES = 20
+LIPS = CONTROL_INDEX["lips_vertical"]
 OUT = Path("out")
 
 
-def widest_span(take: Take, column: int) -> tuple[int, int]:
-    """Return the range around the frame at which a control is largest: where a change shows best."""
-    from engine.controls import measure
-
-    centre = int(np.argmax(np.where(take.lost, -np.inf, measure(take.weights)[:, column])))
+def widest_span(take: Take) -> tuple[int, int]:
+    """Return the range around the frame at which the lips are furthest apart: where a change shows best."""
+    centre = int(np.argmax(np.where(take.lost, -np.inf, measure(take.weights)[:, LIPS])))
     start = max(0, min(centre - SPAN_FRAMES // 2, len(take) - SPAN_FRAMES))
     return start, min(len(take), start + SPAN_FRAMES)
 
 
-def close_lips(take: Take) -> tuple[Edit, tuple[int, int]]:
-    """Close the lips where they are furthest apart; returns the edit and its range of frames."""
-    frames = widest_span(take, CONTROL_INDEX["lips_vertical"])
-    return drag_exact(take, ask(take, "lips_vertical", frames, "set", 0.0)), frames
+def close_lips(take: Take, frames: tuple[int, int]) -> Patch:
+    """Close the lips over a range of frames; the whole face follows."""
+    return edit_control(take, "lips_vertical", frames, "set", 0.0)
+
+
+def write_results(take: Take, edited: Take, frames: tuple[int, int], stem: str) -> list[Path]:
+    """Write the edited take, a picture of before and after, and a short movie of both; returns their paths."""
+    OUT.mkdir(exist_ok=True)
+    written = [OUT / f"{stem}_lips_closed.csv", OUT / f"{stem}_before_after.png", OUT / f"{stem}_before_after.mp4"]
+    write_take(edited, written[0])
+    movie.write_picture([take, edited], sum(frames) // 2, written[1], height=720)
+    start, stop = max(0, frames[0] - MOVIE_MARGIN_FRAMES), min(len(take), frames[1] + MOVIE_MARGIN_FRAMES)
+    movie.write_movie([take, edited], written[2], height=480, frames=(start, stop))
+    return written
 
 
 def main() -> int:
@@ -38,17 +49,20 @@ def main() -> int:
     try:
         path = Path(sys.argv[1]) if len(sys.argv) > 1 else demo.BUNDLED
         take = read_take(path)
-        edit, (start, stop) = close_lips(take)
-        OUT.mkdir(exist_ok=True)
-        target = OUT / f"{path.stem}_lips_closed.csv"
-        write_take(edit.take, target)
+        frames = widest_span(take)
+        patch = close_lips(take, frames)
+        edited = patch.apply(take)
+        written = write_results(take, edited, frames, path.stem)
     except EngineError as error:
         print(error, file=sys.stderr)
         return 2
-    lips = edit.reached[start:stop, CONTROL_INDEX["lips_vertical"]]
+    start, stop = frames
+    lips = measure(edited.weights)[start:stop, LIPS]
     print(f"{take.name}: {len(take)} frames at {take.fps:g} fps, {int(take.lost.sum())} lost")
     print(f"closed the lips over frames {start}:{stop}; they are now at most {lips.max():.2f} mm apart")
-    print(f"wrote {target}")
+    print(f"{len(take) - (patch.stop - patch.start)} frames outside {patch.start}:{patch.stop} are bit-identical")
+    for file in written:
+        print(f"wrote {file}")
     return 0
 
 

@@ -30,6 +30,8 @@ MODEL_FPS = 30.0
 
 
 def _frozen(array: npt.ArrayLike, dtype: type) -> npt.NDArray[np.generic]:
+    if isinstance(array, np.ndarray) and array.dtype == dtype and not array.flags.writeable and array.base is None:
+        return array  # nobody can change it any more, so it need not be copied
     frozen: npt.NDArray[np.generic] = np.array(array, dtype=dtype)
     frozen.flags.writeable = False
     return frozen
@@ -91,6 +93,13 @@ class Take:
         if weights.shape != self.weights.shape:
             raise EditError(f"The new weights have {weights.shape[0]} frames, the take {len(self)}.")
         return replace(self, weights=weights)
+
+    def with_rows(self, start: int, rows: Array) -> Take:
+        """Return the same take with the weights of the frames from `start` replaced, (n, 52)."""
+        weights = self.weights.copy()
+        weights[start : start + len(rows)] = rows
+        weights.flags.writeable = False
+        return self.with_weights(weights)
 
     def curve(self, shape: str) -> Array:
         """Return the weight curve of one shape, (frames,)."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 
 import typer
 
 from app.cli import tables, takes, training
+from app.settings import log_path, start_log
 from engine.errors import EngineError
 
 FAMILIES = (takes, tables, training)
@@ -26,6 +28,11 @@ def build() -> typer.Typer:
     return app
 
 
+def names() -> set[str]:
+    """Return the names of all commands."""
+    return {command.name or command.callback.__name__ for command in build().registered_commands if command.callback}
+
+
 def run(arguments: list[str]) -> int:
     """Run one command; returns its exit code, 2 with one sentence on the error stream for what the user can mend."""
     try:
@@ -35,6 +42,11 @@ def run(arguments: list[str]) -> int:
         return 2
     except KeyboardInterrupt:
         return 130
+    except Exception as error:  # no traceback ever reaches the user; the log gets it
+        start_log()
+        logging.getLogger("app").exception("uncaught")
+        print(f"Something went wrong: {error or type(error).__name__}. {log_path()} has more.", file=sys.stderr)
+        return 1
     except SystemExit as done:
         return done.code if isinstance(done.code, int) else 1
     return 0

@@ -56,9 +56,9 @@ def evaluate(
 
 def bench(as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False) -> None:
     """Measure how fast everything is on this machine, each figure beside its goal."""
-    from app import bench as benches
+    from app.bench import measure
 
-    show("bench", benches.measure(lambda line: errors.print(line, style="dim")), as_json=as_json)
+    show("bench", measure(lambda line: errors.print(line, style="dim")), as_json=as_json)
 
 
 def register(app: typer.Typer) -> None:

@@ -2,8 +2,94 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated
+
 import typer
+
+from app.cli.tables import show
+from engine.errors import EditError
+from engine.formats import read_take, write_take
+from engine.take import runs, timecode
+
+TakeFile = Annotated[Path, typer.Argument(help="A take: a Live Link Face CSV.", show_default=False)]
+Out = Annotated[Path, typer.Option("-o", "--out", help="The file to write.", show_default=False)]
+
+
+def info(
+    take: TakeFile, as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False
+) -> None:
+    """Say what a take holds: length, rate, lost spans, the reach of its controls."""
+    from engine.controls import CONTROLS, measure
+
+    opened = read_take(take)
+    measured = measure(opened.weights)
+    rows = [
+        {"name": control.name, "unit": control.unit, "lowest": float(curve.min()), "highest": float(curve.max())}
+        for control, curve in zip(CONTROLS, measured.T, strict=True)
+    ]
+    rows += [{"name": "lost", "unit": "frames", "lowest": float(a), "highest": float(b)} for a, b in runs(opened.lost)]
+    if not as_json:
+        typer.echo(
+            f"{opened.name}: {len(opened):,} frames at {opened.fps:g} fps, {timecode(opened.duration_s, opened.fps)}"
+        )
+        typer.echo(f"{int(opened.lost.sum()):,} frames lost; head {'recorded' if opened.has_head else 'not recorded'}")
+        for notice in opened.notices:
+            typer.echo(notice)
+    show(f"{opened.name}, {len(opened)} frames, {opened.fps:g} fps", rows, as_json=as_json)
+
+
+def edit(
+    take: TakeFile,
+    control: Annotated[str, typer.Option(help="Which distance, such as lips_vertical.")],
+    frames: Annotated[str, typer.Option(help="First frame and the one after the last, such as 40:60.")],
+    out: Out,
+    set_: Annotated[float | None, typer.Option("--set", help="What it becomes, in mm.")] = None,
+    add: Annotated[float | None, typer.Option("--add", help="What is added, in mm.")] = None,
+    scale: Annotated[float | None, typer.Option("--scale", help="What it is multiplied by.")] = None,
+    exact: Annotated[bool, typer.Option("--exact", help="Hit the asked curve, believable or not.")] = False,
+) -> None:
+    """Change one control over a range of frames; the whole face follows."""
+    from engine.controls import control_index
+    from engine.editing import Change, edit_control, parse_frames
+
+    kinds: dict[Change, float | None] = {"set": set_, "add": add, "scale": scale}
+    given = [(kind, amount) for kind, amount in kinds.items() if amount is not None]
+    if len(given) != 1:
+        raise EditError("Say what becomes of the control.", "Give one of --set, --add or --scale.")
+    opened = read_take(take)
+    column, (start, stop) = control_index(control), parse_frames(frames, opened)
+    patch = edit_control(opened, control, (start, stop), *given[0], exact_curve=exact)
+    write_take(patch.apply(opened), out)
+    reached = patch.reached[start - patch.start : stop - patch.start, column]
+    typer.echo(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} mm")
+    typer.echo(f"frames outside {patch.start}:{patch.stop} are as they were; wrote {out}")
+
+
+def render(
+    take: TakeFile,
+    out: Out,
+    frame: Annotated[int | None, typer.Option(help="The frame of a picture; the first without it.")] = None,
+    compare: Annotated[Path | None, typer.Option(help="Another take to draw at its right.")] = None,
+    size: Annotated[int, typer.Option(help="Height in pixels.", min=64, max=4096)] = 720,
+) -> None:
+    """Draw a take: a PNG of one frame, or an MP4 of all of it."""
+    from app.preview import movie
+
+    shown = [read_take(path) for path in (take, compare) if path is not None]
+    if frame is not None and not all(0 <= frame < len(each) for each in shown):
+        raise EditError(f"Frame {frame} is not within the take, which has {min(map(len, shown))} frames.")
+    if out.suffix.lower() == ".png":
+        movie.write_picture(shown, frame or 0, out, height=size)
+    elif out.suffix.lower() == ".mp4":
+        movie.write_movie(shown, out, height=size)
+    else:
+        raise EditError(f"{out.name} is neither a picture nor a movie.", "Use a name that ends in .png or .mp4.")
+    typer.echo(f"wrote {out}")
 
 
 def register(app: typer.Typer) -> None:
     """Add the commands of this module."""
+    app.command()(info)
+    app.command()(edit)
+    app.command()(render)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from engine.formats import write_take
 from engine.performance.performer import Script, perform
+from engine.take import Take
 
 BUNDLED = Path(__file__).parent.parent.parent / "assets" / "takes" / "demo.csv"
 PHONES = (
@@ -17,7 +18,12 @@ SCRIPT = Script(
 )
 
 
+def performance() -> Take:
+    """Return the demo performance."""
+    return perform(SCRIPT, name="demo")
+
+
 def build(path: Path = BUNDLED) -> None:
     """Write the demo take; the same script gives the same file."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_take(perform(SCRIPT, name="demo"), path)
+    write_take(performance(), path)

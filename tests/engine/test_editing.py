@@ -5,32 +5,98 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine.controls import CONTROL_INDEX
-from engine.editing import ask, drag_exact, parse_frames
+from engine import editing
+from engine.controls import CONTROL_INDEX, measure
+from engine.editing import Dragger, ask, edit_control, parse_frames
 from engine.errors import EditError
-from engine.formats import read_take
+from engine.formats import read_take, write_take
+from engine.models.resample import interpolate
 from engine.performance import demo
+from engine.regress import infer
+from engine.take import SHAPE_INDEX, Take
 
 LIPS = CONTROL_INDEX["lips_vertical"]
 
 
-def test_closing_the_lips_exactly_keeps_all_other_frames() -> None:
-    take = read_take(demo.BUNDLED)
-    edit = drag_exact(take, ask(take, "lips_vertical", (40, 60), "set", 0.0))
-    start, stop = edit.touched
-    assert edit.reached[40:60, LIPS].max() < 0.5
-    assert 30 <= start <= 40 and 60 <= stop <= 70
-    outside = np.r_[0:start, stop : len(take)]
-    np.testing.assert_array_equal(edit.take.weights[outside], take.weights[outside])
+@pytest.fixture(scope="module")
+def demo_take() -> Take:
+    return read_take(demo.BUNDLED)
 
 
-def test_closing_the_lips_of_a_real_take(real_take_path: Path) -> None:
+def test_closing_the_lips_of_a_real_take(real_take_path: Path, tmp_path: Path) -> None:
     take = read_take(real_take_path)
-    edit = drag_exact(take, ask(take, "lips_vertical", (1600, 1620), "set", 0.0))
-    assert edit.reached[1600:1620, LIPS].max() <= 2.0
+    patch = edit_control(take, "lips_vertical", (1600, 1620), "set", 0.0)
+    edited = patch.apply(take)
+    assert measure(edited.weights)[1600:1620, LIPS].max() <= 2.0
+    assert edited.weights[1605:1615, SHAPE_INDEX["jawOpen"]].max() < 0.15 < take.weights[1605, SHAPE_INDEX["jawOpen"]]
+    outside = np.r_[0 : patch.start, patch.stop : len(take)]
+    np.testing.assert_array_equal(edited.weights[outside], take.weights[outside])
+    assert len(outside) >= len(take) - 60
+    write_take(edited, tmp_path / "edited.csv")
+    np.testing.assert_allclose(read_take(tmp_path / "edited.csv").weights, edited.weights, atol=1e-8)
+
+
+@pytest.mark.parametrize("fps", [24.0, 30.0, 59.94, 120.0])
+def test_a_patch_equals_inference_over_the_whole_take(demo_take: Take, fps: float) -> None:
+    """The window is only a short cut: N(asked) - N(original) over the whole take gives the same weights."""
+    frames = int((len(demo_take) - 1) * fps / 30) + 1
+    take = Take(weights=interpolate(demo_take.weights, np.arange(frames) * 30 / fps), fps=fps)
+    dragger = Dragger(take)
+    start = frames // 2
+    asked = dragger.controls[start : start + 30].copy()
+    asked[:, LIPS] = asked[:, LIPS] + 6.0
+    patch = dragger.drag(start, asked)
+
+    wanted = dragger.controls.copy()
+    wanted[start : start + 30] = asked
+    at = np.arange(int(np.ceil((frames - 1) * 30 / fps)) + 1) * fps / 30
+    network = infer.bundled()
+    change = network.infer(interpolate(wanted, at)) - network.infer(interpolate(dragger.controls, at))
+    whole = take.weights + interpolate(change, np.arange(frames) * 30 / fps)
+    expected = np.clip(whole, np.minimum(take.weights, 0), np.maximum(take.weights, 1))
+    np.testing.assert_allclose(
+        patch.weights[start - patch.start :][:30], expected[start : start + 30], rtol=0, atol=1e-5
+    )
+
+
+def test_asking_for_what_is_there_changes_nothing(demo_take: Take) -> None:
+    dragger = Dragger(demo_take)
+    patch = dragger.drag(100, dragger.controls[100:120])
+    np.testing.assert_array_equal(patch.weights, demo_take.weights[patch.start : patch.stop])
+
+
+def test_exact_lands_on_the_asked_curve(demo_take: Take) -> None:
+    dragger = Dragger(demo_take)
+    start, asked = ask(dragger.controls, "lips_vertical", (60, 80), "set", 9.0)
+    patch = dragger.drag(start, asked, exact_curve=True)
+    np.testing.assert_allclose(patch.reached[60 - patch.start : 80 - patch.start, LIPS], 9.0, atol=0.05)
+
+
+def test_contacts_take_hold_without_a_pop(demo_take: Take) -> None:
+    """Reached distance as a function of the asked one has no jump on the way to a contact."""
+    dragger = Dragger(demo_take)
+    values = np.linspace(8.0, 0.0, 41)
+    reached = [
+        dragger.drag(*ask(dragger.controls, "lips_vertical", (60, 80), "set", value)).reached[:, LIPS].min()
+        for value in values
+    ]
+    assert reached[-1] < 0.5
+    assert np.abs(np.diff(reached)).max() < 1.0
 
 
 @pytest.mark.parametrize("text", ["", "5", "60:40", "-1:5", "0:100000", "a:b"])
-def test_a_range_outside_the_take_is_refused(text: str) -> None:
+def test_a_range_outside_the_take_is_refused(demo_take: Take, text: str) -> None:
     with pytest.raises(EditError):
-        parse_frames(text, read_take(demo.BUNDLED))
+        parse_frames(text, demo_take)
+
+
+def test_a_take_of_one_frame_can_be_edited() -> None:
+    take = Take(weights=np.zeros((1, 52)), fps=30.0)
+    patch = edit_control(take, "lips_vertical", (0, 1), "add", 8.0)
+    assert patch.reached[0, LIPS] > 3.0
+    assert patch.apply(take).weights.shape == (1, 52)
+
+
+def test_a_change_must_be_finite(demo_take: Take) -> None:
+    with pytest.raises(EditError):
+        editing.ask(measure(demo_take.weights), "lips_vertical", (0, 5), "set", float("nan"))

@@ -1,0 +1,90 @@
+"""Work off the GUI thread, latest wins: a newer request replaces the one still waiting."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from PySide6.QtCore import QObject, QThread, Signal
+
+from engine.errors import EngineError
+
+log = logging.getLogger(__name__)
+_NOTHING = object()
+
+
+class LatestWins(QObject):
+    """Runs `job(request)` on one thread of its own, always the same one.
+
+    A finished result is always delivered, so that a drag shows steady progress; requests in between are skipped.
+
+    Parameters
+    ----------
+    job : called on the thread; what it returns comes with `done`
+    close : called last on the thread, to give back what the job made there
+    """
+
+    done = Signal(object, object)  # request, result
+    failed = Signal(object, str, str)  # request, sentence, advice
+
+    def __init__(self, job: Callable[[Any], Any], *, name: str, close: Callable[[], None] | None = None) -> None:
+        super().__init__()
+        self._job, self._close = job, close
+        self._wake = threading.Condition()
+        self._waiting: object = _NOTHING
+        self._working = self._stopping = False
+        self._thread = _Thread(self._run)
+        self._thread.setObjectName(name)
+        self._thread.start()
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing waits and nothing runs."""
+        with self._wake:
+            return self._waiting is _NOTHING and not self._working
+
+    def submit(self, request: object) -> None:
+        """Ask for a request to be worked on after the one that runs now."""
+        with self._wake:
+            self._waiting = request
+            self._wake.notify()
+
+    def stop(self) -> None:
+        """Finish the running job, then end the thread; returns when it has."""
+        with self._wake:
+            self._stopping = True
+            self._wake.notify()
+        self._thread.wait()
+
+    def _run(self) -> None:
+        while True:
+            with self._wake:
+                self._working = False
+                self._wake.wait_for(lambda: self._stopping or self._waiting is not _NOTHING)
+                if self._stopping:
+                    break
+                request, self._waiting, self._working = self._waiting, _NOTHING, True
+            try:
+                result = self._job(request)
+            except EngineError as error:
+                self.failed.emit(request, error.sentence, error.advice)
+            except Exception as error:
+                log.exception("background job failed")
+                self.failed.emit(
+                    request, f"Something went wrong: {error or type(error).__name__}.", "The log has more."
+                )
+            else:
+                self.done.emit(request, result)
+        if self._close:
+            self._close()
+
+
+class _Thread(QThread):
+    def __init__(self, body: Callable[[], None]) -> None:
+        super().__init__()
+        self._body = body
+
+    def run(self) -> None:
+        self._body()

@@ -1,0 +1,139 @@
+"""Every speed the program promises, measured on the machine at hand, each beside its goal."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from engine import speed
+from engine.speed import Speed, percentile_ms
+from engine.speed.drag import performance_of
+from engine.take import Take
+
+Report = Callable[[str], None]
+DRAGS = 60
+SIZE = 512
+
+
+def measure(report: Report) -> list[dict[str, Any]]:
+    """Return all rows: the methods', then the window's."""
+    rows: list[Speed] = []
+    for method in speed.METHODS:
+        report(f"measuring {method}")
+        rows += speed.measure(method)
+    for job in ("render", "window"):
+        report(f"measuring {job}")
+        rows += _in_own_process(job)
+    rows.append(_startup())
+    return [{key: value for key, value in asdict(row).items() if key != "at_least"} for row in rows]
+
+
+def _in_own_process(job: str) -> list[Speed]:
+    """Run a measurement where nothing else holds a renderer: one process has room for one."""
+    environment = dict(os.environ, QT_QPA_PLATFORM=os.environ.get("QT_QPA_PLATFORM", "offscreen"))
+    done = subprocess.run(
+        [sys.executable, "-m", "app.bench", job], env=environment, capture_output=True, text=True, check=True
+    )
+    rows = [line.split() for line in done.stdout.splitlines()]
+    return [Speed(name, float(value), unit, float(goal)) for name, value, unit, goal in rows]
+
+
+def _startup() -> Speed:
+    """Measure a cold start to a window that has painted and takes input."""
+    began = time.perf_counter()  # one clock for all processes of a machine
+    (painted,) = _in_own_process("startup")
+    return Speed(painted.name, painted.value - began, painted.unit, painted.goal)
+
+
+def render_job() -> list[Speed]:
+    """Measure drawing one frame after another."""
+    from app.preview.renderer import Renderer, Shot
+    from engine.character import bundled
+
+    take = performance_of(8.0)
+    renderer = Renderer(bundled())
+    spent = percentile_ms(
+        lambda index: renderer.draw(Shot((take.weights[index],), size=(SIZE, SIZE))), DRAGS, percentile=50
+    )
+    return [Speed("render_512_ms", spent, "ms", 20.0)]
+
+
+def window_job() -> list[Speed]:
+    """Measure from the mouse event to the new face on screen, on an 8 s and on a 60 min take."""
+    short, long = _drag_to_preview(performance_of(8.0)), _drag_to_preview(performance_of(3600.0))
+    return [
+        Speed("drag_to_preview_ms_p95", short, "ms", 50.0),
+        Speed("drag_to_preview_60min_ms_p95", long, "ms", 50.0),
+    ]
+
+
+def _drag_to_preview(take: Take) -> float:
+    from PySide6.QtCore import QEventLoop, QTimer
+    from PySide6.QtWidgets import QApplication
+
+    from app.main_window import MainWindow
+
+    application = QApplication.instance() or QApplication(["retake"])
+    window = MainWindow(take)
+    window.show()
+    face = window.preview.face
+    ratio = face.devicePixelRatioF()
+    face.setFixedSize(round(SIZE / ratio), round(SIZE / ratio))
+    spent: list[float] = []
+    loop = QEventLoop()
+    window.preview.timed.connect(spent.append)
+    window.preview.timed.connect(loop.quit)
+    window.inference.ready.connect(loop.quit)
+    loop.exec()
+    start = len(take) // 2
+    window.session.move_playhead(start + 10)
+    for index in range(DRAGS + 5):
+        asked = window.session.controls[start : start + 30].copy()
+        asked[:, 0] += 0.1 * (index + 1)
+        window.inference.ask(start, asked)
+        QTimer.singleShot(2000, loop.quit)
+        loop.exec()
+        application.processEvents()
+    window.inference.cancel()
+    window.session.undo.setClean()
+    window.close()
+    return float(np.percentile(spent[5:], 95))
+
+
+def startup_job() -> list[Speed]:
+    """Open the window and stop the clock when it has painted; the clock began in the process that asked."""
+    from PySide6.QtCore import QTimer
+    from PySide6.QtWidgets import QApplication
+
+    from app.main_window import MainWindow
+    from engine.formats import read_take
+    from engine.performance import demo
+
+    application = QApplication(["retake"])
+    window = MainWindow(read_take(demo.BUNDLED), demo.BUNDLED)
+    window.show()
+    stamp: list[float] = []
+
+    def painted() -> None:
+        window.repaint()
+        stamp.append(time.perf_counter())
+        application.quit()
+
+    QTimer.singleShot(0, painted)
+    application.exec()
+    window.shut_down()
+    return [Speed("startup_s", stamp[0], "s", 3.0)]
+
+
+JOBS: dict[str, Callable[[], list[Speed]]] = {"render": render_job, "window": window_job, "startup": startup_job}
+
+if __name__ == "__main__":
+    for row in JOBS[sys.argv[1]]():
+        print(row.name, row.value, row.unit, row.goal)

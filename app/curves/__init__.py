@@ -1,0 +1,1 @@
+"""The control curves: one lane each, and the tools that bend them."""

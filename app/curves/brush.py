@@ -1,0 +1,24 @@
+"""The soft brush: how far each frame follows the pointer."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.take import Array
+
+
+def falloff(frames: Array, centre: float, radius_frames: float) -> Array:
+    """Return how much each frame follows, 1 at the centre and 0 from the radius on, flat at both ends."""
+    away = np.clip(np.abs(frames - centre) / max(radius_frames, 1e-9), 0.0, 1.0)
+    return np.asarray(1 - away * away * (3 - 2 * away))
+
+
+def pulled(curve: Array, start: int, centre: int, *, by_mm: float, radius_frames: int, strength: float) -> Array:
+    """Return rows of a curve, (n,) in mm from frame `start`, pulled at `centre`; a distance is never below zero."""
+    frames = np.arange(start, start + len(curve), dtype=np.float64)
+    return np.asarray(np.maximum(0.0, curve + strength * by_mm * falloff(frames, centre, radius_frames)))
+
+
+def reach(centre: int, radius_frames: int, frames: int) -> tuple[int, int]:
+    """Return the half-open range of frames that the brush moves, within a take of a number of frames."""
+    return max(0, centre - radius_frames + 1), min(frames, centre + radius_frames)

@@ -1,0 +1,136 @@
+"""One lane: a control's curves in a view of its own, and its name in the gutter where no curve can cross it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QPainter, QPen
+
+from app.curves.peaks import peaks
+from app.theme import GRID, Palette
+from engine.controls import Control
+from engine.take import Array
+
+GUTTER_PX = 128
+
+
+class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
+    """The name of a lane, its range and its value at the playhead."""
+
+    def __init__(self, control: Control) -> None:
+        super().__init__()
+        self._control = control
+        self.colour, self.quiet, self.text_colour = QColor("white"), QColor("grey"), QColor("white")
+        self.active, self.value, self.range = False, 0.0, (0.0, 1.0)
+        self.setFixedWidth(GUTTER_PX)
+
+    def paint(self, painter: QPainter, *_: object) -> None:
+        """Draw name and numbers."""
+        area = QRectF(self.rect()).adjusted(GRID, 2, -GRID, -2)
+        middle = area.center().y()
+        font = QFont(painter.font())
+        font.setPixelSize(12)
+        font.setBold(self.active)
+        painter.setFont(font)
+        painter.setPen(self.colour)
+        name_box = QRectF(area.left(), middle - 17, area.width() - 34, 17)
+        painter.drawText(name_box, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, self._control.title)
+        font.setBold(False)
+        painter.setFont(font)
+        painter.setPen(self.text_colour)
+        value_box = QRectF(area.left(), middle, area.width() - 34, 17)
+        shown = f"{self.value:.1f} {self._control.unit}"
+        painter.drawText(value_box, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, shown)
+        font.setPixelSize(10)
+        painter.setFont(font)
+        painter.setPen(self.quiet)
+        low, high = self.range
+        right = Qt.AlignmentFlag.AlignRight
+        painter.drawText(area, right | Qt.AlignmentFlag.AlignTop, f"{high:.0f}")
+        painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, f"{low:.0f}")
+
+
+class Lane:
+    """The three curves of a control: as opened (faint), as asked (dashed), as the face does it (solid)."""
+
+    def __init__(self, control: Control) -> None:
+        self.control = control
+        self.gutter = Gutter(control)
+        self.view = pg.ViewBox(enableMouse=False, enableMenu=False, defaultPadding=0.0)
+        self.view.setMinimumHeight(28)
+        self.original, self.asked, self.reached = (pg.PlotCurveItem(connect="finite") for _ in range(3))
+        self.dot = pg.ScatterPlotItem(size=9)
+        for item in (self.original, self.asked, self.reached, self.dot):
+            self.view.addItem(item, ignoreBounds=True)
+        self.range = (0.0, 1.0)
+
+    def paint_with(self, colours: Palette, index: int) -> None:
+        """Take on a theme's colours."""
+        colour = QColor(colours.lanes[index % len(colours.lanes)])
+        self.original.setPen(pg.mkPen(colours.faint, width=1))
+        self.asked.setPen(QPen(QColor(colours.text), 1, Qt.PenStyle.DashLine))
+        self.asked.opts["pen"].setCosmetic(True)
+        self.reached.setPen(pg.mkPen(colour, width=1))
+        self.dot.setBrush(pg.mkBrush(colour))
+        self.dot.setPen(pg.mkPen(colours.text, width=1))
+        self.gutter.colour, self.gutter.quiet = colour, QColor(colours.quiet)
+        self.gutter.text_colour = QColor(colours.text)
+
+    def fit(self, *curves: Array) -> None:
+        """Choose the range of values so that the curves, (frames,) each, fit with a margin."""
+        low = min(float(np.nanmin(curve)) for curve in curves)
+        high = max(float(np.nanmax(curve)) for curve in curves)
+        spare = max(0.08 * (high - low), (4.0 - (high - low)) / 2, 0.2)
+        self.gutter.range = (low, high)
+        self.set_range(low - spare, high + spare)
+
+    def set_range(self, low: float, high: float) -> None:
+        """Show values between two bounds, in mm."""
+        self.range = (low, high)
+        self.view.setYRange(low, high, padding=0)
+
+    def show_frames(self, first: float, last: float) -> None:
+        """Show frames between two bounds."""
+        self.view.setXRange(first, last, padding=0)
+
+    def draw_original(self, visible: Array, start: int) -> None:
+        """Draw the curve as opened, visible frames only, (n,) from `start`."""
+        self.original.setData(*peaks(visible, start, self._columns))
+
+    def draw_edit(self, asked: Array, reached: Array, start: int) -> None:
+        """Draw what was asked and what the face does, visible frames only, (n,) each from `start`."""
+        self.asked.setData(*peaks(asked, start, self._columns))
+        self.reached.setData(*peaks(reached, start, self._columns))
+
+    @property
+    def _columns(self) -> int:
+        return max(64, int(self.view.width()))
+
+    def scene_box(self) -> QRectF:
+        """Return the box that the curves are drawn in, in the scene."""
+        return QRectF(self.view.sceneBoundingRect())
+
+    def frame_at(self, x: float) -> float:
+        """Return the fractional frame at a scene position."""
+        box = self.scene_box()
+        (first, last), _ = self.view.viewRange()
+        return float(first + (x - box.left()) / max(1.0, box.width()) * (last - first))
+
+    def value_at(self, y: float) -> float:
+        """Return the value in mm at a scene position."""
+        box = self.scene_box()
+        low, high = self.range
+        return high - (y - box.top()) / max(1.0, box.height()) * (high - low)
+
+    def y_of(self, value: float) -> float:
+        """Return the scene position of a value in mm."""
+        box = self.scene_box()
+        low, high = self.range
+        return box.top() + (high - value) / (high - low) * box.height()
+
+    def x_of(self, frame: float) -> float:
+        """Return the scene position of a frame."""
+        box = self.scene_box()
+        (first, last), _ = self.view.viewRange()
+        return float(box.left() + (frame - first) / max(1e-9, last - first) * box.width())

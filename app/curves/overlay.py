@@ -1,0 +1,88 @@
+"""What lies over or under all lanes alike: playhead, selection, lost spans, the reach of the brush."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QLineF, QRectF, Qt
+from PySide6.QtGui import QBrush, QColor, QPainter, QPen
+from PySide6.QtWidgets import QGraphicsItem, QStyleOptionGraphicsItem, QWidget
+
+from app.theme import Palette
+
+Marks = list[tuple[float, float]]  # half-open ranges of frames
+
+
+class Underlay(QGraphicsItem):
+    """Tints and hatches behind the curves.
+
+    Parameters
+    ----------
+    area : gives the box of all lanes in the scene
+    x_of : scene position of a frame
+    """
+
+    def __init__(self, area: Callable[[], QRectF], x_of: Callable[[float], float]) -> None:
+        super().__init__()
+        self._area, self._x_of = area, x_of
+        self.spans: Marks = []
+        self.selection: tuple[float, float] | None = None
+        self.brush_reach: tuple[float, float] | None = None
+        self.brush_box = QRectF()
+        self.colours: Palette | None = None
+        self.setZValue(-10)
+
+    def boundingRect(self) -> QRectF:
+        """Cover all lanes."""
+        return self._area()
+
+    def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        """Draw spans hatched and tinted, the selection and the brush tinted."""
+        if self.colours is None:
+            return
+        area = self._area()
+        painter.setClipRect(area)
+        painter.setPen(Qt.PenStyle.NoPen)
+        hatch, tint = QColor(self.colours.warning), QColor(self.colours.warning)
+        hatch.setAlphaF(0.22)
+        tint.setAlphaF(0.05)
+        for span in self.spans:
+            box = self._box(span, area)
+            if box.right() >= area.left() and box.left() <= area.right():
+                painter.fillRect(box, tint)
+                painter.fillRect(box, QBrush(hatch, Qt.BrushStyle.BDiagPattern))
+        chosen = QColor(self.colours.text)
+        chosen.setAlphaF(0.07)
+        if self.selection is not None:
+            painter.fillRect(self._box(self.selection, area), chosen)
+        if self.brush_reach is not None:
+            reach = QColor(self.colours.accent)
+            reach.setAlphaF(0.09)
+            painter.fillRect(self._box(self.brush_reach, self.brush_box), reach)
+
+    def _box(self, frames: tuple[float, float], area: QRectF) -> QRectF:
+        left, right = self._x_of(frames[0] - 0.5), self._x_of(frames[1] - 0.5)
+        return QRectF(left, area.top(), max(1.0, right - left), area.height())
+
+
+class Playhead(QGraphicsItem):
+    """A line through every lane at the frame that is shown."""
+
+    def __init__(self, area: Callable[[], QRectF], x_of: Callable[[float], float]) -> None:
+        super().__init__()
+        self._area, self._x_of = area, x_of
+        self.frame = 0
+        self.colour = QColor("white")
+        self.setZValue(10)
+
+    def boundingRect(self) -> QRectF:
+        """Cover all lanes."""
+        return self._area()
+
+    def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        """Draw the line where the frame is on screen."""
+        area = self._area()
+        x = self._x_of(self.frame)
+        if area.left() <= x <= area.right():
+            painter.setPen(QPen(self.colour, 1))
+            painter.drawLine(QLineF(x, area.top(), x, area.bottom()))

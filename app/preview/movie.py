@@ -1,0 +1,59 @@
+"""Pictures and movies of takes, drawn on the calling thread; one renderer for the life of the program."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from app.preview.camera import Camera
+from app.preview.renderer import Picture, Renderer, Shot
+from engine.character import bundled
+from engine.formats.atomic import write_bytes
+from engine.take import Take
+
+ASPECT = 0.8  # width / height of one head
+
+
+@lru_cache(maxsize=1)
+def _renderer() -> Renderer:
+    return Renderer(bundled())
+
+
+def picture(takes: Sequence[Take], frame: int, *, height: int) -> Picture:
+    """Return takes side by side at a frame, (height, width, 3); the shorter ones hold their last frame."""
+    faces = tuple(take.weights[min(frame, len(take) - 1)] for take in takes)
+    even = 2 * (height // 2)
+    width = 2 * round(even * ASPECT * len(faces) / 2)
+    return _renderer().draw(Shot(faces, Camera(), (width, even)))
+
+
+def write_picture(takes: Sequence[Take], frame: int, path: Path, *, height: int) -> None:
+    """Write takes side by side at a frame as a PNG."""
+    from PIL import Image
+
+    stored = io.BytesIO()
+    Image.fromarray(picture(takes, frame, height=height)).save(stored, "PNG")
+    write_bytes(path, [stored.getvalue()])
+
+
+def write_movie(takes: Sequence[Take], path: Path, *, height: int, frames: tuple[int, int] | None = None) -> None:
+    """Write takes side by side as an H.264 MP4 at the first one's rate."""
+    import av
+
+    start, stop = frames or (0, max(len(take) for take in takes))
+    stored = io.BytesIO()
+    with av.open(stored, "w", format="mp4") as container:
+        first = picture(takes, start, height=height)
+        stream = container.add_stream("libx264", rate=Fraction(takes[0].fps).limit_denominator(1001))
+        stream.width, stream.height, stream.pix_fmt = first.shape[1], first.shape[0], "yuv420p"
+        stream.options = {"crf": "18"}
+        for frame in range(start, stop):
+            drawn = picture(takes, frame, height=height)
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(np.ascontiguousarray(drawn), format="rgb24")))
+        container.mux(stream.encode())
+    write_bytes(path, [stored.getvalue()])

@@ -1,0 +1,272 @@
+"""The panel that shows the face, with its views and its camera."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QComboBox,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.inference import Inference
+from app.preview.camera import PRESETS, Camera
+from app.preview.renderer import GROUND, HEAT, HEAT_FULL_MM, Picture, Shot
+from app.preview.worker import Wanted, render_thread
+from app.session import Change, Session
+from app.theme import GRID
+from engine.character import Character
+
+VIEWS = ("Before", "After", "Split", "Difference")
+BUDGET_MS = 45.0  # a frame that takes longer is drawn at half resolution while something moves
+STILL_MS = 180
+
+
+class Face(QWidget):
+    """The picture; drag orbits, right-drag or Shift-drag pans, wheel zooms, double-click frames the head."""
+
+    camera_moved = Signal(object)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.camera = Camera()
+        self.image = QImage()
+        self.view = "After"
+        self.message = "Preparing the preview…"
+        self._grip: QPointF | None = None
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.setMinimumSize(200, 200)
+        self.setCursor(Qt.CursorShape.OpenHandCursor)
+        self.setAccessibleName("Face preview")
+
+    def sizeHint(self) -> QSize:
+        """Prefer a portrait."""
+        return QSize(460, 620)
+
+    def show_picture(self, picture: Picture) -> None:
+        """Show a picture, (height, width, 3) uint8."""
+        height, width = picture.shape[:2]
+        self.image = QImage(picture.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
+        self.message = ""
+        self.repaint()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw the picture to fill the panel, then what labels it."""
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), QColor(*GROUND))
+        if not self.image.isNull():
+            painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+            painter.drawImage(self.rect(), self.image)
+        painter.setPen(QColor("#e3e6eb"))
+        if self.message:
+            flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+            painter.drawText(self.rect().adjusted(24, 24, -24, -24), flags, self.message)
+        elif self.view == "Split":
+            middle = self.width() // 2
+            painter.drawLine(middle, 0, middle, self.height())
+            painter.drawText(GRID, 18, "before")
+            painter.drawText(middle + GRID, 18, "after")
+        elif self.view == "Difference":
+            self._draw_scale(painter)
+
+    def _draw_scale(self, painter: QPainter) -> None:
+        left, top, width, height = GRID, self.height() - 34, 160, 8
+        steps = 40
+        for index in range(steps):
+            at = index / (steps - 1) * (len(HEAT) - 1)
+            colour = [int(np.interp(at, np.arange(len(HEAT)), channel)) for channel in HEAT.T]
+            painter.fillRect(QRectF(left + index * width / steps, top, width / steps + 1, height), QColor(*colour))
+        painter.drawText(left, top + 22, "0")
+        painter.drawText(left + width - 44, top + 22, f"{HEAT_FULL_MM:.0f} mm +")
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Take hold of the camera."""
+        self._grip = event.position()
+        self.setCursor(Qt.CursorShape.ClosedHandCursor)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Orbit or pan."""
+        if self._grip is None:
+            return
+        moved = event.position() - self._grip
+        self._grip = event.position()
+        if event.buttons() & Qt.MouseButton.RightButton or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            scale = 1.0 / (self.height() * self.camera.zoom)
+            self._move(self.camera.panned(-moved.x() * scale, moved.y() * scale))
+        else:
+            self._move(self.camera.orbited(around_deg=-0.4 * moved.x(), above_deg=0.4 * moved.y()))
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """Let go."""
+        self._grip = None
+        self.setCursor(Qt.CursorShape.OpenHandCursor)
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Frame the whole head from the front."""
+        self._move(Camera())
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Zoom."""
+        self._move(self.camera.zoomed(1.15 ** (event.angleDelta().y() / 120.0)))
+
+    def _move(self, camera: Camera) -> None:
+        self.camera = camera
+        self.camera_moved.emit(camera)
+
+
+class PreviewPanel(QFrame):
+    """Before, after, split or difference of the frame at the playhead.
+
+    Parameters
+    ----------
+    session : whose frame is shown
+    inference : tells when the draft on screen was asked for, to time drag to preview
+    """
+
+    timed = Signal(float)  # ms from the mouse event to its picture on screen
+    failed = Signal(str, str)
+
+    def __init__(self, session: Session, inference: Inference) -> None:
+        super().__init__()
+        self.setProperty("panel", True)
+        self._session, self._inference = session, inference
+        self._character: Character | None = None
+        self.face = Face()
+        self._frame_label = QLabel()
+        self._frame_label.setProperty("quiet", True)
+        self._coarse = False
+        self._spent_ms = 0.0
+        self._asked_at = 0.0
+        self._off = False
+        self._still = QTimer(self, singleShot=True, interval=STILL_MS)
+        self._still.timeout.connect(self._sharpen)
+        self.drawing = render_thread()
+        self.drawing.done.connect(self._arrived)
+        self.drawing.failed.connect(self._refused)
+        self._lay_out()
+        self.face.camera_moved.connect(lambda _: self.refresh())
+        session.changed.connect(self._on_change)
+
+    def _lay_out(self) -> None:
+        row = QHBoxLayout()
+        row.setSpacing(2)
+        self._views = QButtonGroup(self)
+        for name in VIEWS:
+            button = QToolButton()
+            button.setText(name)
+            button.setCheckable(True)
+            button.setProperty("segment", True)
+            button.setToolTip(f"Show {name.lower()} (hold B to see the original)")
+            self._views.addButton(button)
+            row.addWidget(button)
+            button.setChecked(name == self.face.view)
+            button.clicked.connect(lambda _=False, chosen=name: self.show_view(chosen))
+        row.addStretch(1)
+        self.presets = QComboBox()
+        self.presets.addItems(list(PRESETS))
+        self.presets.setToolTip("Where the face is looked at from")
+        self.presets.activated.connect(lambda index: self.look_from(list(PRESETS)[index]))
+        row.addWidget(self.presets)
+        foot = QHBoxLayout()
+        hint = QLabel("Drag to orbit · wheel to zoom · hold B for before")
+        hint.setProperty("quiet", True)
+        foot.addWidget(hint)
+        foot.addStretch(1)
+        foot.addWidget(self._frame_label)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(GRID, GRID, GRID, GRID)
+        column.addLayout(row)
+        column.addWidget(self.face, 1)
+        column.addLayout(foot)
+
+    def show_view(self, name: str) -> None:
+        """Show before, after, split or difference."""
+        self.face.view = name
+        for button in self._views.buttons():
+            button.setChecked(button.text() == name)
+        self.refresh()
+
+    def look_from(self, name: str) -> None:
+        """Look at the face from a named place."""
+        self.face.camera = PRESETS[name]
+        self.refresh()
+
+    def show_character(self, character: Character | None) -> None:
+        """Show another head; None is the bundled one."""
+        self._character = character
+        self.refresh()
+
+    def close_renderer(self) -> None:
+        """End the render thread."""
+        self._still.stop()
+        self.drawing.stop()
+
+    def refresh(self, *, moving: bool = True, since: float = 0.0) -> None:
+        """Draw the frame at the playhead anew; coarser while something moves and the budget is missed."""
+        if self._off or not self.isVisible():
+            return
+        self._coarse = moving and self._spent_ms > BUDGET_MS
+        ratio = self.devicePixelRatioF() * (0.5 if self._coarse else 1.0)
+        size = (int(self.face.width() * ratio), int(self.face.height() * ratio))
+        self._asked_at = time.perf_counter()
+        self.drawing.submit(Wanted(replace(self._shot(), size=size), self._character, since))
+        if self._coarse:
+            self._still.start()
+
+    def _shot(self) -> Shot:
+        session, view = self._session, self.face.view
+        after = session.frame_weights(session.playhead)
+        before = np.asarray(session.original.weights[session.playhead])
+        camera = self.face.camera
+        if view == "Before":
+            return Shot((before,), camera)
+        if view == "Split":
+            return Shot((before, after), camera)
+        if view == "Difference":
+            return Shot((after,), camera, compared_to=before)
+        return Shot((after,), camera)
+
+    def _sharpen(self) -> None:
+        self.refresh(moving=False)
+
+    def _arrived(self, wanted: Wanted, picture: Picture) -> None:
+        spent = (time.perf_counter() - self._asked_at) * 1e3
+        if not self._coarse:
+            self._spent_ms = spent
+        self.face.show_picture(picture)
+        if wanted.since:
+            self.timed.emit((time.perf_counter() - wanted.since) * 1e3)
+
+    def _refused(self, wanted: Wanted, sentence: str, advice: str) -> None:
+        self._off = True
+        self.face.image = QImage()
+        self.face.message = f"Preview off\n\n{sentence}"
+        self.face.update()
+        self.failed.emit(sentence, advice)
+
+    def _on_change(self, change: Change) -> None:
+        if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD):
+            session = self._session
+            self._frame_label.setText(f"frame {session.playhead:,}")
+            drafted = change & Change.DRAFT and session.draft is not None
+            self.refresh(since=self._inference.since if drafted else 0.0)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Draw at the new size."""
+        super().resizeEvent(event)
+        self.refresh()
+
+    def showEvent(self, event: object) -> None:
+        """Draw as soon as there is something to draw on."""
+        QTimer.singleShot(0, self.refresh)

@@ -1,0 +1,177 @@
+"""The one renderer: pyrender behind a class of our own, used only by the thread that made it."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from app.preview.camera import FIELD_OF_VIEW_DEG, Camera
+from app.preview.lighting import Lighting, to_linear
+from engine.character import Character
+from engine.errors import EngineError
+from engine.take import Array
+
+if sys.platform == "linux":
+    os.environ.setdefault("PYOPENGL_PLATFORM", "egl")
+
+Picture = npt.NDArray[np.uint8]  # (height, width, 3) sRGB
+GROUND = (0x23, 0x27, 0x2E)
+_GROUND = np.array(GROUND, np.float32) / 255.0
+NECK_FADE = 0.3  # parts of the head's height over which the neck's cut end dissolves into the ground
+HEAT_FULL_MM = 10.0
+# From still to far: a ramp of rising lightness that reads in grey and for colour-blind eyes too.
+HEAT = np.array([(52, 56, 66), (52, 84, 140), (86, 180, 233), (240, 228, 66), (255, 250, 225)], np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """What to draw.
+
+    Attributes
+    ----------
+    faces : weights, (52,) each; two or more stand side by side
+    camera : seen from where
+    size : width and height in pixels
+    compared_to : weights, (52,), whose distance to the face is painted on it in mm
+    """
+
+    faces: tuple[Array, ...]
+    camera: Camera = field(default_factory=Camera)
+    size: tuple[int, int] = (512, 512)
+    compared_to: Array | None = None
+
+
+def heat(moved_mm: Array) -> npt.NDArray[np.uint8]:
+    """Return sRGB colours, (n, 3), of distances, (n,) in mm, full at HEAT_FULL_MM."""
+    at = np.clip(moved_mm / HEAT_FULL_MM, 0.0, 1.0) * (len(HEAT) - 1)
+    return np.stack([np.interp(at, np.arange(len(HEAT)), channel) for channel in HEAT.T], axis=1).astype(np.uint8)
+
+
+class Renderer:
+    """Draws a character; raises `EngineError` where there is no OpenGL to draw with.
+
+    Parameters
+    ----------
+    character : what is drawn
+    """
+
+    def __init__(self, character: Character) -> None:
+        pyrender = _pyrender()
+        self._character, self._lighting = character, Lighting(character)
+        self._flags = pyrender.RenderFlags.FLAT
+        neutral = character.neutral
+        self._low, self._high = _framed(character)
+        rise = (neutral[:, 1] - neutral[:, 1].min()) / (NECK_FADE * (self._high[1] - self._low[1]))
+        self._solid = np.clip(rise, 0.0, 1.0)[:, None].astype(np.float32)
+        coloured = np.ones((len(neutral), 4), np.float32)
+        self._primitive = pyrender.Primitive(
+            positions=neutral.astype(np.float32),
+            indices=character.triangles.astype(np.uint32),
+            color_0=coloured,
+            # floats: integers would be taken as 0..255 and draw black
+            material=pyrender.MetallicRoughnessMaterial(baseColorFactor=[1.0, 1.0, 1.0, 1.0], doubleSided=True),
+        )
+        self._scene = pyrender.Scene(bg_color=[*(value / 255 for value in GROUND), 1.0])
+        self._scene.add(pyrender.Mesh([self._primitive]))
+        self._camera = pyrender.PerspectiveCamera(yfov=np.radians(FIELD_OF_VIEW_DEG), znear=50.0, zfar=6000.0)
+        self._camera_node = self._scene.add(self._camera, pose=np.eye(4))
+        self._vertex_rows = np.ones((len(neutral), 7), np.float32)  # position, colour: the layout of the buffer
+        try:
+            self._target = pyrender.OffscreenRenderer(64, 64)
+        except Exception as error:  # each platform fails with errors of its own
+            raise EngineError(
+                f"The preview cannot be drawn: {error or type(error).__name__}.", "Editing works without it."
+            ) from error
+        _skip_depth(self._target._renderer)
+
+    @property
+    def device(self) -> str:
+        """The name of what draws, as OpenGL gives it."""
+        from OpenGL.GL import GL_RENDERER, glGetString
+
+        self._target._platform.make_current()
+        name = glGetString(GL_RENDERER)
+        return name.decode(errors="replace") if name else "unknown"
+
+    def draw(self, shot: Shot) -> Picture:
+        """Return the picture of a shot, (height, width, 3)."""
+        width, height = (max(16, edge) for edge in shot.size)
+        borders = np.linspace(0, width, len(shot.faces) + 1).round().astype(int)
+        panels = [
+            self._panel(weights, shot, int(right - left), height)
+            for weights, left, right in zip(shot.faces, borders, borders[1:], strict=False)
+        ]
+        return panels[0] if len(panels) == 1 else np.concatenate(panels, axis=1)
+
+    def _panel(self, weights: Array, shot: Shot, width: int, height: int) -> Picture:
+        pose = shot.camera.pose(self._low, self._high, aspect=width / height)
+        vertices = self._character.vertices(weights)
+        colours = None
+        if shot.compared_to is not None:
+            moved = np.linalg.norm(vertices - self._character.vertices(shot.compared_to), axis=1)
+            colours = to_linear(heat(moved))
+        self._vertex_rows[:, :3] = vertices
+        lit = self._lighting.shade(vertices, pose[:3, 3].astype(np.float32), colours)
+        self._vertex_rows[:, 3:6] = _GROUND + self._solid * (lit - _GROUND)
+        self._upload()
+        self._scene.set_pose(self._camera_node, pose)
+        self._target.viewport_width, self._target.viewport_height = width, height
+        return np.asarray(self._target.render(self._scene, flags=self._flags))
+
+    def _upload(self) -> None:
+        """Write the vertex buffer in place: pyrender itself reads positions only once, before the first drawing."""
+        if not self._primitive._buffers:
+            self._primitive.positions = self._vertex_rows[:, :3].copy()
+            self._primitive.color_0 = self._vertex_rows[:, 3:].copy()
+            return
+        from OpenGL.GL import GL_ARRAY_BUFFER, glBindBuffer, glBufferSubData
+
+        self._target._platform.make_current()
+        glBindBuffer(GL_ARRAY_BUFFER, self._primitive._buffers[0])
+        glBufferSubData(GL_ARRAY_BUFFER, 0, self._vertex_rows.nbytes, self._vertex_rows)
+        glBindBuffer(GL_ARRAY_BUFFER, 0)
+
+    def close(self) -> None:
+        """Give back what OpenGL holds."""
+        self._target.delete()
+
+
+def _framed(character: Character) -> tuple[Array, Array]:
+    """Return the box to frame, from a little under the chin to the crown; all of a character without that landmark."""
+    low, high = character.neutral.min(axis=0).astype(float), character.neutral.max(axis=0).astype(float)
+    if "chin" in character.landmarks:
+        chin = float(character.neutral[character.landmarks["chin"], 1])
+        low[1] = max(low[1], chin - 0.2 * (high[1] - chin))
+    return low, high
+
+
+def _pyrender() -> Any:
+    # pyrender 0.1.45 was written for numpy 1, which had this second name for infinity.
+    if not hasattr(np, "infty"):
+        np.infty = np.inf  # type: ignore[attr-defined]  # noqa: NPY201
+    import pyrender
+
+    return pyrender
+
+
+def _skip_depth(renderer: Any) -> None:
+    """Read back colour alone: the depth picture costs as much to read and nobody looks at it."""
+    from OpenGL import GL
+
+    def read_colour(scene: object, flags: int) -> Picture:
+        width, height = renderer._main_fb_dims
+        GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, renderer._main_fb_ms)
+        GL.glBindFramebuffer(GL.GL_DRAW_FRAMEBUFFER, renderer._main_fb)
+        whole = (0, 0, width, height)
+        GL.glBlitFramebuffer(*whole, *whole, GL.GL_COLOR_BUFFER_BIT, GL.GL_LINEAR)
+        GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, renderer._main_fb)
+        GL.glPixelStorei(GL.GL_PACK_ALIGNMENT, 1)
+        pixels = GL.glReadPixels(*whole, GL.GL_RGB, GL.GL_UNSIGNED_BYTE)
+        return np.ascontiguousarray(np.frombuffer(pixels, np.uint8).reshape(height, width, 3)[::-1])
+
+    renderer._read_main_framebuffer = read_colour

@@ -1,0 +1,47 @@
+"""The render thread: the one that makes, uses and gives back the one renderer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.background import LatestWins
+from app.preview.renderer import Picture, Renderer, Shot
+from engine import character
+from engine.character import Character
+
+
+@dataclass(frozen=True, eq=False)
+class Wanted:
+    """A shot, the character in it, and when the user did what it shows (0 when nobody waits for it)."""
+
+    shot: Shot
+    character: Character | None = None
+    since: float = 0.0
+
+
+class RenderJob:
+    """Draws what is wanted; makes its renderer on first use, on the thread that calls it."""
+
+    def __init__(self) -> None:
+        self._renderer: Renderer | None = None
+        self._character: Character | None = None
+
+    def __call__(self, wanted: Wanted) -> Picture:
+        """Return the picture of a shot."""
+        shown = wanted.character or character.bundled()
+        if self._renderer is None or self._character is not shown:
+            self.close()
+            self._renderer, self._character = Renderer(shown), shown
+        return self._renderer.draw(wanted.shot)
+
+    def close(self) -> None:
+        """Give the renderer back."""
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None
+
+
+def render_thread() -> LatestWins:
+    """Return the running thread."""
+    job = RenderJob()
+    return LatestWins(job, name="render", close=job.close)

@@ -1,0 +1,118 @@
+"""Colours, sizes and the style sheet: the only place that knows what anything looks like."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+GRID = 8  # px
+FONT_PX = 12
+# Okabe and Ito's order, fit for every kind of colour vision; the last two are lightened for dark ground.
+LANES = ("#56B4E9", "#E69F00", "#2BB88F", "#F0E442", "#CC79A7", "#E8743B", "#8FB4FF", "#B9BEC8")
+LANES_ON_LIGHT = ("#0F73AE", "#9A6A00", "#007355", "#7A6F00", "#A0447A", "#B44A00", "#3D5FC4", "#4D5562")
+
+
+@dataclass(frozen=True)
+class Palette:
+    """The colours of one theme, as #rrggbb."""
+
+    ground: str
+    panel: str
+    edge: str
+    raised: str
+    text: str
+    quiet: str
+    faint: str
+    accent: str
+    on_accent: str
+    warning: str
+    good: str
+    lanes: tuple[str, ...]
+
+
+DARK = Palette(
+    ground="#14161a",
+    panel="#1b1e24",
+    edge="#2a2f38",
+    raised="#262b34",
+    text="#e3e6eb",
+    quiet="#8b93a1",
+    faint="#5a616d",
+    accent="#56B4E9",
+    on_accent="#0b1117",
+    warning="#E69F00",
+    good="#009E73",
+    lanes=LANES,
+)
+LIGHT = Palette(
+    ground="#e9ebef",
+    panel="#fbfcfd",
+    edge="#cfd4dc",
+    raised="#eef0f4",
+    text="#1c2026",
+    quiet="#59616e",
+    faint="#98a0ad",
+    accent="#0F73AE",
+    on_accent="#ffffff",
+    warning="#9A6A00",
+    good="#007355",
+    lanes=LANES_ON_LIGHT,
+)
+
+
+def style_sheet(colours: Palette) -> str:
+    """Return the Qt style sheet of a theme."""
+    c = colours
+    return f"""
+* {{ font-size: {FONT_PX}px; color: {c.text}; }}
+QMainWindow, QDialog, QWidget#central {{ background: {c.ground}; }}
+QFrame[panel="true"] {{ background: {c.panel}; border: 1px solid {c.edge}; border-radius: 6px; }}
+QLabel, QCheckBox {{ background: transparent; border: none; }}
+QLabel[quiet="true"] {{ color: {c.quiet}; }}
+QLabel[heading="true"] {{ font-weight: 600; }}
+QLabel[warning="true"] {{ color: {c.warning}; }}
+QToolButton, QPushButton {{
+  background: transparent; border: 1px solid transparent; border-radius: 4px; padding: 5px 10px; }}
+QPushButton {{ background: {c.raised}; }}
+QToolButton:hover, QPushButton:hover {{ background: {c.edge}; }}
+QToolButton:checked, QPushButton[primary="true"] {{ background: {c.accent}; color: {c.on_accent}; }}
+QToolButton[segment="true"]:checked {{ background: {c.edge}; color: {c.text}; }}
+QToolButton:disabled, QPushButton:disabled {{ color: {c.faint}; }}
+QToolButton:focus, QPushButton:focus, QCheckBox:focus, QSlider:focus, QDoubleSpinBox:focus {{
+  border: 1px solid {c.accent}; }}
+QToolButton::menu-indicator {{ image: none; }}
+QFrame[line="true"] {{ background: {c.edge}; border: none; }}
+QSlider::groove:horizontal {{ height: 4px; background: {c.edge}; border-radius: 2px; }}
+QSlider::sub-page:horizontal {{ background: {c.accent}; border-radius: 2px; }}
+QSlider::handle:horizontal {{ width: 12px; height: 12px; margin: -4px 0; border-radius: 6px; background: {c.text}; }}
+QSlider {{ border: 1px solid transparent; border-radius: 4px; min-height: 18px; }}
+QCheckBox::indicator {{
+  width: 12px; height: 12px; border: 1px solid {c.quiet}; border-radius: 3px; background: {c.ground}; }}
+QCheckBox::indicator:checked {{ background: {c.accent}; border-color: {c.accent}; }}
+QCheckBox {{ border: 1px solid transparent; border-radius: 4px; padding: 2px; spacing: 8px; }}
+QDoubleSpinBox, QSpinBox, QLineEdit, QComboBox, QPlainTextEdit, QListWidget, QTreeWidget, QTableWidget {{
+  background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; padding: 3px 6px;
+  selection-background-color: {c.accent}; selection-color: {c.on_accent}; }}
+QComboBox QAbstractItemView {{ background: {c.panel}; border: 1px solid {c.edge}; }}
+QHeaderView::section {{ background: {c.panel}; color: {c.quiet}; border: none; padding: 3px 6px; }}
+QMenuBar {{ background: {c.ground}; }}
+QMenuBar::item {{ padding: 4px 8px; background: transparent; }}
+QMenuBar::item:selected {{ background: {c.raised}; border-radius: 4px; }}
+QMenu {{ background: {c.panel}; border: 1px solid {c.edge}; padding: 4px; }}
+QMenu::item {{ padding: 5px 24px 5px 12px; border-radius: 4px; }}
+QMenu::item:selected {{ background: {c.edge}; }}
+QMenu::item:disabled {{ color: {c.faint}; }}
+QMenu::separator {{ height: 1px; background: {c.edge}; margin: 4px 8px; }}
+QToolTip {{ background: {c.raised}; color: {c.text}; border: 1px solid {c.edge}; padding: 4px; }}
+QScrollBar:horizontal {{ height: 10px; background: transparent; margin: 0; }}
+QScrollBar::handle:horizontal {{ background: {c.edge}; border-radius: 4px; min-width: 24px; margin: 1px; }}
+QScrollBar:vertical {{ width: 10px; background: transparent; margin: 0; }}
+QScrollBar::handle:vertical {{ background: {c.edge}; border-radius: 4px; min-height: 24px; margin: 1px; }}
+QScrollBar::handle:hover {{ background: {c.faint}; }}
+QScrollBar::add-line, QScrollBar::sub-line, QScrollBar::add-page, QScrollBar::sub-page {{
+  background: transparent; border: none; width: 0; height: 0; }}
+QScrollArea, QScrollArea > QWidget > QWidget {{ background: transparent; border: none; }}
+QSplitter::handle {{ background: transparent; }}
+QProgressBar {{ background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; text-align: center; height: 14px; }}
+QProgressBar::chunk {{ background: {c.accent}; border-radius: 3px; }}
+QFrame#banner {{ background: {c.raised}; border: 1px solid {c.warning}; border-radius: 6px; }}
+"""

@@ -1,0 +1,1 @@
+"""Time: the ruler, the spans, and the bar that shows where in the take the view is."""

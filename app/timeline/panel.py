@@ -1,0 +1,194 @@
+"""The ruler and the spans lane above the curves, and the scroll bar beneath them."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, QSize, Qt
+from PySide6.QtGui import QBrush, QColor, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
+from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
+
+from app.session import Change, Session
+from app.theme import GRID, Palette
+from engine.take import runs, timecode
+
+RULER_PX, SPANS_PX, LABEL_PX = 26, 22, 76
+STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
+
+
+class Timeline(QWidget):
+    """Timecode to scrub on, and the spans the tracker lost.
+
+    Parameters
+    ----------
+    session : whose time is shown
+    gutter_px : width of the lanes' gutter, so that frames stand under their ticks
+    """
+
+    def __init__(self, session: Session, colours: Palette, *, gutter_px: int) -> None:
+        super().__init__()
+        self._session, self._colours, self._gutter = session, colours, gutter_px
+        self._selecting: int | None = None
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setMouseTracking(True)
+        self.setAccessibleName("Timeline")
+        self.setToolTip("Drag to scrub. Shift-drag to select a range. Wheel to zoom.")
+        session.changed.connect(self._on_change)
+
+    def paint_with(self, colours: Palette) -> None:
+        """Take on a theme's colours."""
+        self._colours = colours
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        """As high as its lanes."""
+        return QSize(400, RULER_PX + SPANS_PX)
+
+    def _on_change(self, change: Change) -> None:
+        if change & (Change.TAKE | Change.VIEW | Change.PLAYHEAD | Change.SELECTION):
+            self.update()
+
+    # --- geometry
+
+    def _span_px(self) -> float:
+        return max(1.0, self.width() - self._gutter - GRID)
+
+    def x_of(self, frame: float) -> float:
+        """Return the position of a frame in the widget."""
+        first, last = self._session.view
+        return self._gutter + (frame - first) / max(1e-9, last - first) * self._span_px()
+
+    def frame_at(self, x: float) -> float:
+        """Return the fractional frame at a position in the widget."""
+        first, last = self._session.view
+        return first + (x - self._gutter) / self._span_px() * (last - first)
+
+    # --- drawing
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw ruler, spans, selection and playhead."""
+        painter = QPainter(self)
+        painter.setPen(QColor(self._colours.quiet))
+        left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        painter.drawText(QRectF(GRID, RULER_PX, self._gutter, SPANS_PX), left, "spans")
+        painter.setClipRect(QRectF(self._gutter, 0, self._span_px(), self.height()))
+        self._draw_selection(painter)
+        self._draw_ticks(painter)
+        self._draw_spans(painter)
+        x = self.x_of(self._session.playhead)
+        painter.setPen(QPen(QColor(self._colours.text), 1))
+        painter.drawLine(int(x), 2, int(x), self.height())
+        painter.setBrush(QColor(self._colours.text))
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.drawPolygon([QPointF(x - 5, 0), QPointF(x + 5, 0), QPointF(x, 7)])
+
+    def _draw_selection(self, painter: QPainter) -> None:
+        chosen = self._session.selection
+        if chosen is None:
+            return
+        left, right = self.x_of(chosen[0] - 0.5), self.x_of(chosen[1] - 0.5)
+        tint = QColor(self._colours.accent)
+        tint.setAlphaF(0.25)
+        painter.fillRect(QRectF(left, 0, right - left, RULER_PX), tint)
+
+    def _draw_ticks(self, painter: QPainter) -> None:
+        session = self._session
+        fps = session.take.fps
+        first, last = session.view
+        per_second = self._span_px() / max(1e-9, (last - first) / fps)
+        step = next((s for s in STEPS_S if s * per_second >= LABEL_PX), STEPS_S[-1])
+        index = int(first / fps / step)
+        middle = Qt.AlignmentFlag.AlignCenter
+        while index * step * fps <= last:
+            time_s = index * step
+            x = self.x_of(time_s * fps)
+            painter.setPen(QColor(self._colours.quiet))
+            label = max(x - 50, self._gutter - 50 + LABEL_PX / 2)
+            painter.drawText(QRectF(label, 4, 100, 14), middle, timecode(time_s, fps))
+            painter.setPen(QColor(self._colours.edge))
+            painter.drawLine(int(x), 20, int(x), RULER_PX)
+            index += 1
+
+    def _draw_spans(self, painter: QPainter) -> None:
+        warning = QColor(self._colours.warning)
+        tint = QColor(warning)
+        tint.setAlphaF(0.12)
+        for start, stop in runs(self._session.take.lost):
+            left, right = self.x_of(start - 0.5), self.x_of(stop - 0.5)
+            if right < self._gutter or left > self.width():
+                continue
+            box = QRectF(left, RULER_PX + 3, max(3.0, right - left), SPANS_PX - 7)
+            painter.fillRect(box, tint)
+            painter.fillRect(box, QBrush(warning, Qt.BrushStyle.BDiagPattern))
+            painter.setPen(QPen(warning, 1))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(box)
+            if box.width() > 40:
+                text = painter.fontMetrics().horizontalAdvance("lost") + 10
+                label = QRectF(box.center().x() - text / 2, box.top() + 1, text, box.height() - 2)
+                painter.fillRect(label, QColor(self._colours.panel))
+                painter.drawText(label, Qt.AlignmentFlag.AlignCenter, "lost")
+
+    # --- the mouse
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Scrub; with Shift begin to select; on a span select it."""
+        if event.button() != Qt.MouseButton.LeftButton:
+            return
+        frame = round(self.frame_at(event.position().x()))
+        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            self._selecting = frame
+            return
+        if event.position().y() > RULER_PX:
+            hit = [span for span in runs(self._session.take.lost) if span[0] <= frame < span[1]]
+            self._session.select(hit[0] if hit else None)
+        self._session.move_playhead(frame)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Go on scrubbing or selecting."""
+        if not event.buttons() & Qt.MouseButton.LeftButton:
+            return
+        frame = round(self.frame_at(event.position().x()))
+        if self._selecting is not None:
+            self._session.select((self._selecting, frame))
+        else:
+            self._session.move_playhead(frame)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """End the selection; Shift with a mere click clears it."""
+        if self._selecting is not None and round(self.frame_at(event.position().x())) == self._selecting:
+            self._session.select(None)
+        self._selecting = None
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Zoom around the pointer; with Shift or sideways pan."""
+        turn = event.angleDelta()
+        notches = (turn.y() or turn.x()) / 120.0
+        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(turn.x()) > abs(turn.y()):
+            first, last = self._session.view
+            shift = -notches * 0.1 * (last - first)
+            self._session.set_view(first + shift, last + shift)
+        else:
+            self._session.zoom_view(1.2**notches, self.frame_at(event.position().x()))
+
+
+class TimeScroll(QScrollBar):
+    """Where in the take the view is, in frames."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(Qt.Orientation.Horizontal)
+        self._session = session
+        self.valueChanged.connect(self._scrolled)
+        session.changed.connect(self._on_change)
+        self._on_change(Change.VIEW)
+
+    def _on_change(self, change: Change) -> None:
+        if change & (Change.TAKE | Change.VIEW):
+            first, last = self._session.view
+            with QSignalBlocker(self):
+                self.setRange(0, max(0, len(self._session.take) - 1 - int(last - first)))
+                self.setPageStep(max(1, int(last - first)))
+                self.setSingleStep(max(1, int((last - first) / 20)))
+                self.setValue(int(first))
+
+    def _scrolled(self, value: int) -> None:
+        first, last = self._session.view
+        self._session.set_view(value, value + last - first)

@@ -1,0 +1,36 @@
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.main_window import MainWindow
+from app.settings import Settings
+from engine.formats import read_take
+from engine.performance import demo
+
+
+@pytest.fixture
+def window(qtbot: QtBot, tmp_path: Path) -> Iterator[MainWindow]:
+    """The window on the demo take, networks loaded and first picture drawn."""
+    opened = MainWindow(read_take(demo.BUNDLED), demo.BUNDLED, Settings(tmp_path / "settings.ini"))
+    with qtbot.waitSignals([opened.inference.ready, opened.preview.drawing.done], timeout=60_000):
+        opened.show()
+    settled(qtbot, opened)
+    yield opened
+    opened.session.undo.setClean()
+    opened.close()
+    opened.deleteLater()
+
+
+def settled(qtbot: QtBot, window: MainWindow) -> None:
+    """Wait until nothing is inferred or drawn any more, full resolution included."""
+
+    def nothing_left() -> bool:
+        return window.inference._work.idle and window.preview.drawing.idle and not window.preview._still.isActive()
+
+    qtbot.waitUntil(nothing_left, timeout=30_000)
+    qtbot.wait(20)  # results that were finished are still on their way to this thread
+    qtbot.waitUntil(nothing_left, timeout=30_000)

@@ -1,0 +1,132 @@
+"""The non-expert: open, drag, see the face follow, undo, redo, save, open again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QImage
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog
+from pytestqt.qtbot import QtBot
+
+from app.main_window import MainWindow
+from engine.controls import CONTROL_INDEX, measure
+from engine.formats import read_take
+from tests.journeys.conftest import settled
+
+LIPS = CONTROL_INDEX["lips_vertical"]
+
+
+def pixels(window: MainWindow) -> np.ndarray:
+    image = window.preview.face.image.convertToFormat(QImage.Format.Format_RGB888)
+    rows = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.bytesPerLine())
+    return rows[:, : 3 * image.width()].copy()
+
+
+def on_curve(window: MainWindow, lane: int, frame: int) -> QPoint:
+    shown = window.curves.lanes[lane]
+    value = float(window.session.controls[frame, lane])
+    return window.curves.mapFromScene(shown.x_of(frame), shown.y_of(value))
+
+
+def drag(qtbot: QtBot, window: MainWindow, lane: int, frame: int, by_mm: float) -> None:
+    area = window.curves.viewport()
+    window.session.choose_lane(lane)
+    window.session.move_playhead(frame)
+    settled(qtbot, window)
+    start = on_curve(window, lane, frame)
+    shown = window.curves.lanes[lane]
+    per_mm = shown.y_of(1.0) - shown.y_of(0.0)
+    QTest.mouseMove(area, start)
+    QTest.mousePress(area, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, start)
+    for part in (0.25, 0.5, 0.75, 1.0):
+        QTest.mouseMove(area, start + QPoint(0, round(part * by_mm * per_mm)))
+        qtbot.waitUntil(lambda: window.session.draft is not None, timeout=10_000)
+    end = start + QPoint(0, round(by_mm * per_mm))
+    steps = window.session.undo.count()
+    QTest.mouseRelease(area, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, end)
+    qtbot.waitUntil(lambda: window.session.undo.count() == steps + 1, timeout=10_000)
+    settled(qtbot, window)
+
+
+def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch
+) -> None:
+    session = window.session
+    frame = int(np.argmax(session.controls[:, LIPS]))
+    session.move_playhead(frame)
+    settled(qtbot, window)
+    before = session.take.weights.copy(), session.controls.copy(), pixels(window)
+
+    drag(qtbot, window, LIPS, frame, -10.0)
+    after = session.take.weights.copy(), session.controls.copy(), pixels(window)
+    assert session.controls[frame, LIPS] < before[1][frame, LIPS] - 6.0
+    assert np.abs(after[0] - before[0]).max() > 0.1
+    assert (after[2] != before[2]).mean() > 0.005
+    far = np.abs(np.arange(len(session.take)) - frame) > 60
+    np.testing.assert_array_equal(after[0][far], before[0][far])
+    np.testing.assert_allclose(session.controls, measure(session.take.weights), atol=1e-9)
+
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    settled(qtbot, window)
+    for restored, original in zip((session.take.weights, session.controls, pixels(window)), before, strict=True):
+        np.testing.assert_array_equal(restored, original)
+
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    settled(qtbot, window)
+    for again, edited in zip((session.take.weights, session.controls, pixels(window)), after, strict=True):
+        np.testing.assert_array_equal(again, edited)
+
+    target = tmp_path / "Ärger 顔.csv"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(target), ""))
+    QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    assert not session.edited
+    np.testing.assert_allclose(read_take(target).weights, session.take.weights, atol=1e-8)
+    assert window.load(target)
+    np.testing.assert_allclose(session.take.weights, after[0], atol=1e-8)
+
+
+def test_play_and_step_by_keys(qtbot: QtBot, window: MainWindow) -> None:
+    QTest.keyClick(window, Qt.Key.Key_Right)
+    QTest.keyClick(window, Qt.Key.Key_Right)
+    QTest.keyClick(window, Qt.Key.Key_Left)
+    assert window.session.playhead == 1
+    QTest.keyClick(window, Qt.Key.Key_Space)
+    qtbot.waitUntil(lambda: window.session.playhead > 8, timeout=10_000)
+    QTest.keyClick(window, Qt.Key.Key_Space)
+    assert not window.transport.playing
+    QTest.keyClick(window, Qt.Key.Key_Down)
+    assert window.session.take.lost[window.session.playhead]
+
+
+def test_escape_drops_the_drag_under_way(qtbot: QtBot, window: MainWindow) -> None:
+    area, start = window.curves.viewport(), on_curve(window, LIPS, 80)
+    QTest.mousePress(area, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, start)
+    QTest.mouseMove(area, start + QPoint(0, 40))
+    qtbot.waitUntil(lambda: window.session.draft is not None, timeout=10_000)
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    QTest.mouseRelease(area, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, start)
+    settled(qtbot, window)
+    assert window.session.draft is None and window.session.undo.count() == 0
+
+
+def test_close_here_shuts_the_lips_on_the_selection(qtbot: QtBot, window: MainWindow) -> None:
+    window.session.choose_lane(LIPS)
+    window.session.select((70, 90))
+    QTest.mouseClick(window.inspector.close_button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: window.session.undo.count() == 1, timeout=10_000)
+    assert window.session.controls[70:90, LIPS].max() < 2.0
+    assert window.session.undo.undoText() == "close lips apart"
+
+
+def test_a_file_that_cannot_be_read_leaves_the_work_as_it_was(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
+    drag(qtbot, window, LIPS, 80, -4.0)
+    take = window.session.take
+    for name, content in (("a.csv", b""), ("b.csv", b"\x89PNG\r\n\x1a\n" + bytes(200)), ("c.csv", b"hello, world\n")):
+        (tmp_path / name).write_bytes(content)
+        assert not window.load(tmp_path / name)
+        assert window.notices.isVisible() and name in window.notices.text.text()
+        assert "Traceback" not in window.notices.text.text()
+    assert window.session.take is take and window.session.undo.count() == 1
