@@ -10,7 +10,7 @@ from rich.console import Console
 
 from engine.errors import EngineError
 
-NETWORKS = ("regress",)
+NETWORKS = ("regress", "inpaint")
 ASSETS = ("demo", "head")
 
 

@@ -30,7 +30,7 @@ Report = Callable[[str], None]
 Method = Callable[[Gap], Array]
 
 SPANS_S = (0.2, 0.5, 1.0, 2.0, 3.0, 4.0)
-LOST_RUNS = (25, 123, 129)  # frames; the long lost runs of the recorded takes
+LOST_S = (25 / MODEL_FPS, 123 / MODEL_FPS, 129 / MODEL_FPS)  # the long lost runs of the recorded takes
 GUIDANCE = ("none", "keyframes", "noisy", "visemes", "controls")
 KEYFRAME_S = 0.4  # between keyframes: the middle of the paper's 0 to 0.8 s
 MOST = 40  # holes of each length
@@ -92,7 +92,7 @@ def guided(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
         return gap_of(known)
     if kind == "noisy":
         return gap_of(known, guide=np.where(hole.mask, roughened(hole.truth, rng), np.nan))
-    inside = hole.mask.any(axis=1)
+    inside = np.asarray(hole.mask.any(axis=1))
     if kind == "visemes":
         return gap_of(known, visemes=one_hot(np.where(inside, read_lips(hole.truth, fps=MODEL_FPS), -1)))
     if kind == "controls":
@@ -149,7 +149,7 @@ def rows(
     report: Report,
     *,
     filler: Filler | None = None,
-    spans_s: Sequence[float] = (*SPANS_S, *(run / MODEL_FPS for run in LOST_RUNS)),
+    spans_s: Sequence[float] = (*SPANS_S, *LOST_S),
     guidance: Sequence[str] = GUIDANCE,
     most: int = MOST,
 ) -> list[Row]:

@@ -49,7 +49,8 @@ class MotionAutoencoder(nn.Module):
 
     def forward(self, weights: Tensor) -> Tensor:
         """Return windows as the latents hold them."""
-        return self.decode(self.latents(weights)).transpose(1, 2) * self.scale + self.mean
+        held: Tensor = self.decode(self.latents(weights)).transpose(1, 2) * self.scale + self.mean
+        return held
 
 
 def latents_of(stretches: Sequence[Array]) -> Array:
@@ -86,7 +87,7 @@ def train(data: Path, out: Path = MODELS, report: Callable[[str], None] = print)
         batch = torch.tensor(np.stack([draw(material, FRAMES, rng).weights for _ in range(BATCH)]), dtype=torch.float32)
         loss = ((network(batch) - batch) / network.scale).square().mean()
         optimizer.zero_grad()
-        loss.backward()  # type: ignore[no-untyped-call]
+        loss.backward()
         optimizer.step()
         if step % 500 == 499:
             report(f"motion {step + 1}/{STEPS}: loss {float(loss.detach()):.4f}")

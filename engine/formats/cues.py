@@ -16,6 +16,7 @@ def read_cues(path: Path) -> list[Cue]:
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise FormatError(
-            f"{path.name} is not a kind of file that visemes can be in.", "Use a TextGrid, or Rhubarb's TSV, XML or JSON."
+            f"{path.name} is not a kind of file that visemes can be in.",
+            "Use a TextGrid, or Rhubarb's TSV, XML or JSON.",
         )
     return reader(path)

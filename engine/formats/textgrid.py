@@ -13,7 +13,9 @@ from engine.speech.visemes import Cue
 PHONE_TIERS = ("phones", "phone", "phonemes", "phoneme", "visemes", "viseme", "segments", "mau")
 # A quoted text (doubled quotes inside), an index in brackets to skip, a flag, or a number standing for itself. Both
 # forms of the format are the same sequence of texts and numbers; the long one only names them.
-_TOKEN = re.compile(r'"(?P<text>(?:[^"]|"")*)"|\[[^\]\n]*\]|(?P<flag><\w+>)|(?<![\w.])(?P<number>-?\d[\d.eE+-]*)(?![\w.])')
+_TOKEN = re.compile(
+    r'"(?P<text>(?:[^"]|"")*)"|\[[^\]\n]*\]|(?P<flag><\w+>)|(?<![\w.])(?P<number>-?\d[\d.eE+-]*)(?![\w.])'
+)
 
 
 def read(path: Path) -> list[Cue]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
@@ -14,13 +14,12 @@ from engine.errors import EditError
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler, bundled
 from engine.inpaint.regions import region_shapes
-from engine.inpaint.request import Pose, Request, checked
+from engine.inpaint.request import Pose, Request, Style, checked
 from engine.inpaint.seams import REACH_FRAMES, bridge, land
 from engine.models.resample import interpolate
 from engine.speech.visemes import Cue, classes_over, one_hot
 from engine.take import MODEL_FPS, SHAPES, Array, Take, runs
 
-Style = Literal["auto", "bridge", "perform"]
 BRIDGE_S = 0.25  # up to here a smooth curve through the seams is closer to what was there than a performance
 _CONTEXT = 60  # model frames on either side that the network looks at
 _SEAM = 2  # known frames on either side that fix value and slope
@@ -106,7 +105,7 @@ def fill_spans(take: Take, spans: Sequence[tuple[int, int]], request: Request, *
     Raises `EditError` for spans that overlap or share no pin with one that is asked for.
     """
     ordered = sorted(spans)
-    for (_, stop), (start, _) in zip(ordered, ordered[1:], strict=False):
+    for (_, stop), (start, _) in pairwise(ordered):
         if start < stop:
             raise EditError(f"Two spans overlap at frame {start}.", "Join them into one, or fill one after the other.")
     stray = [frame for frame in request.pins if not any(start <= frame < stop for start, stop in ordered)]
@@ -155,7 +154,7 @@ class _Window:
     @property
     def at(self) -> Array:
         """The take's frame at each model frame, fractional."""
-        return (self.first + np.arange(self.frames)) * self.pace
+        return np.asarray((self.first + np.arange(self.frames)) * self.pace, np.float64)
 
     def nearest(self, frame: int) -> int:
         """The model frame, counted from the window's first, nearest to a frame of the take."""
@@ -199,15 +198,22 @@ def _placed(take: Take, request: Request, motion: Array, window: _Window) -> Tak
     for frame, pose in request.poses().items():
         row = known[frame - first]
         known[frame - first] = np.where(np.isnan(row), pose, row)
-    made = motion[first - window.first : last - window.first] if window.pace == 1 else _resampled(motion, window, first, last)
+    made = (
+        motion[first - window.first : last - window.first]
+        if window.pace == 1
+        else _resampled(motion, window, first, last)
+    )
     if window.pace != 1:
         made = land(made, known, reach_frames=REACH_FRAMES * window.pace, hold=_closures(made))
         made = np.where(np.isnan(known), np.clip(made, 0.0, 1.0), known)
-    weights, lost = take.weights.copy(), take.lost.copy()
-    weights[np.ix_(np.arange(start, stop), shapes)] = made[start - first : stop - first][:, shapes]
-    if len(shapes) == len(SHAPES):
-        lost[start:stop] = False
-    return replace(take, weights=weights, lost=lost)
+    rows = take.weights[start:stop].copy()
+    rows[:, shapes] = made[start - first : stop - first][:, shapes]
+    filled = take.with_rows(start, rows)
+    if len(shapes) < len(SHAPES) or not take.lost[start:stop].any():
+        return filled
+    lost = take.lost.copy()
+    lost[start:stop] = False
+    return replace(filled, lost=lost)
 
 
 def _resampled(motion: Array, window: _Window, first: int, last: int) -> Array:

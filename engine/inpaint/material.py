@@ -107,7 +107,7 @@ def random_gap(truth: Performance, help_: Help, rng: np.random.Generator) -> Gap
     """Return a window of truth with holes torn into it and a random subset of the guidance kinds."""
     frames = len(truth.weights)
     hole = random_hole(frames, rng)
-    inside = hole.any(axis=1)
+    inside = np.asarray(hole.any(axis=1))
     guided = rng.random() > help_.unguided
     wanted = {name: guided and rng.random() < getattr(help_, name) for name in ("pins", "guide", "visemes", "controls")}
     if inside.all() and not any(wanted.values()):
@@ -119,7 +119,10 @@ def random_gap(truth: Performance, help_: Help, rng: np.random.Generator) -> Gap
     guide = np.where(hole, roughened(truth.weights, rng), np.nan) if wanted["guide"] else None
     said = one_hot(np.where(inside, truth.visemes, -1)) if wanted["visemes"] else None
     return gap_of(
-        known, guide=guide, visemes=said, controls=_some_controls(truth, inside, help_, rng) if wanted["controls"] else None
+        known,
+        guide=guide,
+        visemes=said,
+        controls=_some_controls(truth, inside, help_, rng) if wanted["controls"] else None,
     )
 
 

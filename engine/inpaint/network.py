@@ -8,8 +8,8 @@ import torch
 from torch import Tensor, nn
 from torch.nn.utils.parametrizations import spectral_norm
 
-from engine.controls import Control, Measurer
 from engine.character import bundled
+from engine.controls import Control, Measurer
 from engine.inpaint.gap import FEATURES
 from engine.models.distances import Distances
 from engine.take import SHAPES

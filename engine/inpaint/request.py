@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 
@@ -15,7 +16,8 @@ from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
 Pose = Mapping[str, float] | Array
 LOWEST, HIGHEST = -0.1, 1.1  # recorded weights stray a little outside 0..1
-STYLES = ("auto", "bridge", "perform")
+Style = Literal["auto", "bridge", "perform"]
+STYLES: tuple[Style, ...] = ("auto", "bridge", "perform")
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +31,7 @@ class Request:
     guide_offset: int = 0
     visemes: tuple[Cue, ...] = ()
     controls: Mapping[str, Array | float] = field(default_factory=dict)
-    style: str = "auto"
+    style: Style = "auto"
     lost: bool = False
 
     def poses(self) -> dict[int, Array]:

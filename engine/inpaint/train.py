@@ -21,6 +21,7 @@ from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card
 from engine.take import MODEL_FPS
 
 Report = Callable[[str], None]
+SHARED = "inpaint_shared.partial.safetensors"  # where both ways part
 
 
 @dataclass(frozen=True)
@@ -30,9 +31,9 @@ class Settings:
     seed: int = 0
     frames: int = 200
     batch: int = 16
-    rate: float = 1e-3
-    shared_steps: int = 2000  # before the ways part: no adversary yet
-    parted_steps: int = 1400
+    rate: float = 1e-3  # of the discriminator, and of the generator at the parting of the ways; twice that before
+    shared_steps: int = 1400  # before the ways part: no adversary yet
+    parted_steps: int = 700
     value_share: float = 30.0  # on means, where the paper sums; with the terms below about as large as the adversary
     velocity_share: float = 30.0
     distance_share: float = 0.1  # per mm
@@ -88,13 +89,14 @@ class Trainer:
 
     def __init__(self, material: Sequence[Performance], settings: Settings, *, adversary: bool) -> None:
         torch.manual_seed(settings.seed)
-        self._material, self._settings, self._adversary = material, settings, adversary
+        self._material, self.settings, self._adversary = material, settings, adversary
         self.statistics = statistics_of(np.concatenate([one.weights for one in material]))
         self._distances = six_distances()
         self.generator = Generator(GeneratorConfig())
         self.generator.scale.copy_(torch.tensor(self.statistics.scale))
         self.kept = torch.optim.swa_utils.AveragedModel(
-            self.generator, multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(settings.average)
+            self.generator,
+            multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(settings.average),  # type: ignore[no-untyped-call]
         )
         self.discriminator = Discriminator(settings.frames)
         self.discriminator.scale.copy_(self._face_scale())
@@ -113,7 +115,7 @@ class Trainer:
 
     def advance(self) -> dict[str, float]:
         """Take one step; returns every loss term by name."""
-        settings, part = self._settings, self.step >= self._settings.shared_steps
+        settings, part = self.settings, self.step >= self.settings.shared_steps
         rng = np.random.default_rng([settings.seed, self.step])
         torch.manual_seed(settings.seed * 1_000_003 + self.step)
         against = part and self._adversary
@@ -136,8 +138,8 @@ class Trainer:
 
     def _pace(self, part: bool) -> None:
         """Halve the rate once the ways part and let it fall to a tenth of that by the end."""
-        done = (self.step - self._settings.shared_steps) / max(1, self._settings.parted_steps)
-        rate = self._settings.rate * (0.5 * (1 - 0.9 * done) if part else 1.0)
+        done = (self.step - self.settings.shared_steps) / max(1, self.settings.parted_steps)
+        rate = self.settings.rate * (1 - 0.9 * done if part else 2.0)
         for group in self._make.param_groups:
             group["lr"] = rate
 
@@ -145,7 +147,8 @@ class Trainer:
         noise = torch.randn(len(batch.truth), 1, self.generator.config.noise).repeat(1, batch.truth.shape[1], 1)
         noise[..., 0] = torch.randn(noise.shape[:2])  # one curve is new at every frame, the others hold all along
         motion = self.generator(batch.features, noise)
-        return batch.base + batch.rise * motion
+        made: Tensor = batch.base + batch.rise * motion
+        return made
 
     def _against(self, batch: Batch, made: Tensor, losses: dict[str, Tensor]) -> dict[str, Tensor]:
         """Let the discriminator learn, then return the generator's terms with its score (equations 2 and 3).
@@ -154,7 +157,7 @@ class Trainer:
         amount: where several motions are believable, that leaves room for more than one of them.
         """
         other = self._generate(batch)
-        others = fill_losses(other, batch, self._distances, self._settings)
+        others = fill_losses(other, batch, self._distances, self.settings)
         real, hole = self._seen(batch.truth), batch.hole
         sums = torch.stack([sum(losses.values()), sum(others.values())])  # type: ignore[list-item]
         best = sums.argmin(dim=0)
@@ -165,7 +168,7 @@ class Trainer:
         fakes = [self._seen(made), self._seen(other)]
         judged = self._judge_step(real, [fake.detach() for fake in fakes], hole)
         score = torch.cat([self.discriminator(fake) for fake in fakes]).mean()
-        return terms | {"adversary": -self._settings.adversary_share * score} | judged
+        return terms | {"adversary": -self.settings.adversary_share * score} | judged
 
     def _judge_step(self, real: Tensor, fakes: list[Tensor], hole: Tensor) -> dict[str, Tensor]:
         fake = fakes[0]
@@ -175,8 +178,10 @@ class Trainer:
         share = torch.rand(len(real), 1, 1)
         between = (share * real + (1 - share) * fake).requires_grad_()
         slope = torch.autograd.grad(self.discriminator(between).sum(), between, create_graph=True)[0]
-        masked = slope * torch.cat([hole, hole.amax(dim=2, keepdim=True).expand(-1, -1, slope.shape[2] - hole.shape[2])], 2)
-        penalty = self._settings.penalty * (masked.flatten(1).norm(dim=1) - 1).square().mean()
+        masked = slope * torch.cat(
+            [hole, hole.amax(dim=2, keepdim=True).expand(-1, -1, slope.shape[2] - hole.shape[2])], 2
+        )
+        penalty = self.settings.penalty * (masked.flatten(1).norm(dim=1) - 1).square().mean()
         self._judge.zero_grad()
         (hinge + penalty).backward()
         self._judge.step()
@@ -199,7 +204,7 @@ class Trainer:
         for name, optimizer in (("make", self._make), ("judge", self._judge)):
             for index, state in optimizer.state_dict()["state"].items():
                 tensors |= {f"{name}/{index}/{key}": torch.as_tensor(value) for key, value in state.items()}
-        save_model(path, tensors, kind="inpaint-partial", config={"step": self.step, "settings": asdict(self._settings)})
+        save_model(path, tensors, kind="inpaint-partial", config={"step": self.step, "settings": asdict(self.settings)})
 
     def load(self, path: Path) -> None:
         """Go on from a saved state."""
@@ -235,22 +240,21 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
     training, validation, _ = split(data)
     material = performances(training, settings.help, np.random.default_rng(settings.seed))
     figures: dict[str, Any] = {}
-    shared = out / "inpaint_shared.partial.safetensors"
     for name, adversary in (("inpaint", True), ("inpaint_feedforward", False)):
         trainer = Trainer(material, settings, adversary=adversary)
-        partial = out / f"{name}.partial.safetensors"
-        seconds = _run(trainer, settings, shared, partial, name, report)
+        seconds = _run(trainer, out, name, report)
         figures[name] = validation_figures(trainer.filler(), validation)
         report(f"{name}: {figures[name]}")
         save_filler(out / f"{name}.safetensors", trainer.filler())
         save_card(out / f"{name}.safetensors", _card(name, training, settings, figures[name], seconds))
-        partial.unlink(missing_ok=True)
-    shared.unlink(missing_ok=True)
+        (out / f"{name}.partial.safetensors").unlink(missing_ok=True)
+    (out / SHARED).unlink(missing_ok=True)
     return figures
 
 
-def _run(trainer: Trainer, settings: Settings, shared: Path, partial: Path, name: str, report: Report) -> float:
+def _run(trainer: Trainer, out: Path, name: str, report: Report) -> float:
     """Train to the end from wherever it stopped; returns the seconds that this run took."""
+    settings, shared, partial = trainer.settings, out / SHARED, out / f"{name}.partial.safetensors"
     for earlier in (partial, shared):
         if earlier.exists():
             trainer.load(earlier)

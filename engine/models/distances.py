@@ -27,5 +27,6 @@ class Distances(nn.Module):
         """Measure; mouthClose counts no further than the jaw is open."""
         close = torch.minimum(weights[..., _CLOSE], weights[..., _JAW].clamp(min=0))
         weights = torch.cat([weights[..., :_CLOSE], close[..., None], weights[..., _CLOSE + 1 :]], dim=-1)
-        vectors = (weights @ self.basis).unflatten(-1, (-1, 3)) + self.rest
+        moved = weights @ self.basis  # (..., controls * 3)
+        vectors = moved.reshape(*moved.shape[:-1], -1, 3) + self.rest
         return torch.sqrt(vectors.square().sum(dim=-1) + 1e-6)

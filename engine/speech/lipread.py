@@ -45,4 +45,4 @@ def read_lips(weights: Array, *, fps: float) -> np.ndarray:
         said[start:stop] = _MBP if brief else _SIL
     lone = (said[:-2] == said[2:]) & (said[1:-1] != _MBP)
     said[1:-1][lone] = said[:-2][lone]
-    return said
+    return np.asarray(said)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 # Each is a module of this package with `measure() -> list[Speed]`.
-METHODS: tuple[str, ...] = ("takes", "drag")
+METHODS: tuple[str, ...] = ("takes", "drag", "fill")
 
 
 @dataclass(frozen=True)
