@@ -106,7 +106,7 @@ def ground(gap: Gap, statistics: Statistics) -> Ground:
     distance = distance_frames(gap.known)
     rise = 1 - np.exp(-((distance / RISE_FRAMES) ** 2))
     base = _along_guide(gap)
-    base = _bent(base, rise, gap.controls, statistics)
+    base = np.where(np.isnan(gap.known), _bent(base, rise, gap.controls, statistics), gap.known)
     nearest = _nearest(gap, distance)
     guided = np.isfinite(gap.guide).any(axis=1) | np.isfinite(gap.controls).any(axis=1) | gap.visemes.any(axis=1)
     certainty = np.where(guided, 1.0, np.exp(-nearest / _SETTLED_FRAMES))

@@ -85,8 +85,9 @@ def _completed(mouth: Array, faces: Sequence[Array], rng: np.random.Generator) -
 
 def window(curves: Array, frames: int, start: int) -> Array:
     """Return a stretch of curves of a given length from `start` on, running to and fro where it is longer than they."""
-    turn = np.abs((np.arange(start, start + frames) + len(curves)) % max(1, 2 * len(curves) - 2) - len(curves) + 1)
-    return np.asarray(curves[np.clip(turn, 0, len(curves) - 1)])
+    last = len(curves) - 1
+    turn = np.abs((np.arange(start, start + frames) + last) % max(1, 2 * last) - last)
+    return np.asarray(curves[turn])
 
 
 def draw(material: Sequence[Performance], frames: int, rng: np.random.Generator) -> Performance:

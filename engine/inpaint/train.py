@@ -30,6 +30,7 @@ class Settings:
 
     seed: int = 0
     frames: int = 200
+    hidden: int = 128
     batch: int = 16
     rate: float = 1e-3  # of the discriminator, and of the generator at the parting of the ways; twice that before
     shared_steps: int = 1400  # before the ways part: no adversary yet
@@ -92,7 +93,7 @@ class Trainer:
         self._material, self.settings, self._adversary = material, settings, adversary
         self.statistics = statistics_of(np.concatenate([one.weights for one in material]))
         self._distances = six_distances()
-        self.generator = Generator(GeneratorConfig())
+        self.generator = Generator(GeneratorConfig(hidden=settings.hidden))
         self.generator.scale.copy_(torch.tensor(self.statistics.scale))
         self.kept = torch.optim.swa_utils.AveragedModel(
             self.generator,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -49,6 +50,7 @@ _IPA = {
     "th": "θ ð",
     "r": "ɹ ʁ",
 }
+_STRESS = re.compile(r"(?<=[^\W\d])[012ːˑ]+$")  # ARPAbet writes stress behind a vowel, IPA length
 INDEX: dict[str, int] = {
     **{name: index for index, name in enumerate(NAMES)},
     **{label: NAMES.index(name) for name, labels in _IPA.items() for label in labels.split()},
@@ -71,7 +73,7 @@ def class_of(label: str) -> int:
 
     Raises `EditError` for a label that is none of these.
     """
-    plain = label.strip().lower().rstrip("012ːˑ")
+    plain = _STRESS.sub("", label.strip().lower())
     if plain not in INDEX:
         raise EditError(
             f"There is no viseme or phone called {label.strip()[:40]!r}.",
