@@ -7,11 +7,11 @@ import sys
 
 import typer
 
-from app.cli import fill, tables, takes, training
+from app.cli import blind, fill, tables, takes, training
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 
-FAMILIES = (takes, fill, tables, training)
+FAMILIES = (takes, fill, blind, tables, training)
 
 
 def build() -> typer.Typer:

@@ -17,6 +17,7 @@ TABLES: dict[str, str] = {
     "regress": "Control curves to weights: mean squared error, closures (BSBS19 table 1, figure 8)",
     "inpaint": "Filling spans: error, spectra, closures and seams per length and guidance (BSS20 section 5)",
     "controls": "Weights from control curves alone, of the whole take (BSS20 table 4)",
+    "asked": "Masked bilabials, blinks and smiles that come back from one pin or viseme",
     "bezier": "Points that a hand edit would need, and our time (BSS20 table 3)",
 }
 

@@ -30,6 +30,9 @@ def six_distances() -> Distances:
     return Distances(Measurer(bundled(), SIX))
 
 
+_WIDEST = 8.0  # spreads; beyond it a feature tells nothing more
+
+
 @dataclass(frozen=True)
 class GeneratorConfig:
     """Sizes of the generator: paper values, with four noise curves where it has one."""
@@ -39,10 +42,15 @@ class GeneratorConfig:
     hidden: int = 128
     layers: int = 2
     dropout: float = 0.3
+    filter_frames: int = 9
 
 
 class Generator(nn.Module):
-    """Two bidirectional LSTM layers and a dense one: features and noise to the motion to add, before its rise."""
+    """Two bidirectional LSTM layers and a dense one, beside a linear filter: features and noise to the motion to add.
+
+    The paper's network is the recurrent path. The filter looks a few frames to either side; it carries what is nearly
+    linear (jitter to take off a guide, the pose of a viseme, the pull of a control) past the narrow recurrent state.
+    """
 
     scale: Tensor
 
@@ -57,35 +65,47 @@ class Generator(nn.Module):
             bidirectional=True,
             dropout=config.dropout,
         )
-        self.drop = nn.Dropout(config.dropout)
         self.dense = nn.Linear(2 * config.hidden, len(SHAPES))
-        nn.init.zeros_(self.dense.weight)
-        nn.init.zeros_(self.dense.bias)
+        width = config.filter_frames
+        self.filter = nn.Conv1d(config.features + config.noise, len(SHAPES), width, padding=width // 2)
+        for parameter in (*self.dense.parameters(), *self.filter.parameters()):
+            nn.init.zeros_(parameter)
         self.register_buffer("scale", torch.ones(len(SHAPES)))
 
     def forward(self, features: Tensor, noise: Tensor) -> Tensor:
         """Return motion, (batch, frames, 52), of features, (batch, frames, FEATURES), and noise of the same frames."""
-        remembered, _ = self.recurrent(torch.cat([features, noise], dim=-1))  # (batch, frames, 2 * hidden)
-        motion: Tensor = self.dense(self.drop(remembered)) * self.scale
+        seen = torch.cat([features.clamp(-_WIDEST, _WIDEST), noise], dim=-1)
+        remembered, _ = self.recurrent(seen)  # (batch, frames, 2 * hidden)
+        near = self.filter(seen.transpose(1, 2)).transpose(1, 2)  # (batch, frames, 52)
+        motion: Tensor = (self.dense(remembered) + near) * self.scale
         return motion
 
 
+def see(weights: Tensor, distances: Distances) -> Tensor:
+    """Return what the discriminator looks at, (batch, frames, 116): weights, six distances, and the velocities of both.
+
+    The paper shows it poses alone; beside them the little motions that make a face alive are too small to be seen.
+    """
+    pose = torch.cat([weights, distances(weights)], dim=-1)
+    return torch.cat([pose, torch.diff(pose, dim=1, prepend=pose[:, :1])], dim=-1)
+
+
 class Discriminator(nn.Module):
-    """Four strided convolutions with spectral norm and one dense layer: weights and six distances to a score."""
+    """Four strided convolutions with spectral norm and one dense layer: a performance to a score."""
 
     scale: Tensor
 
     def __init__(self, frames: int, widths: tuple[int, ...] = (64, 32, 16, 8)) -> None:
         super().__init__()
         layers: list[nn.Module] = []
-        inputs, left = len(SHAPES) + len(SIX), frames
+        inputs, left = 2 * (len(SHAPES) + len(SIX)), frames
         for width in widths:
             layers += [spectral_norm(nn.Conv1d(inputs, width, 3, stride=2, padding=1)), nn.LeakyReLU(0.2)]
             inputs, left = width, (left + 1) // 2
         self.layers = nn.Sequential(*layers, nn.Flatten(), nn.Linear(inputs * left, 1))
-        self.register_buffer("scale", torch.ones(len(SHAPES) + len(SIX)))
+        self.register_buffer("scale", torch.ones(2 * (len(SHAPES) + len(SIX))))
 
-    def forward(self, face: Tensor) -> Tensor:
-        """Return scores, (batch,), of weights beside their six distances in mm, (batch, frames, 58)."""
-        score: Tensor = self.layers((face / self.scale).transpose(1, 2))[:, 0]
+    def forward(self, seen: Tensor) -> Tensor:
+        """Return scores, (batch,), of what `see` returns, (batch, frames, 116)."""
+        score: Tensor = self.layers(seen.transpose(1, 2))[:, 0]
         return score

@@ -16,7 +16,7 @@ from engine.corpus import Piece, split
 from engine.inpaint.gap import Statistics, ground, statistics_of
 from engine.inpaint.infer import Filler, save_filler
 from engine.inpaint.material import Help, Performance, draw, performances, random_gap
-from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, six_distances
+from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, see, six_distances
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
 from engine.take import MODEL_FPS
 
@@ -33,14 +33,16 @@ class Settings:
     hidden: int = 128
     batch: int = 16
     rate: float = 1e-3  # of the discriminator, and of the generator at the parting of the ways; twice that before
-    shared_steps: int = 1400  # before the ways part: no adversary yet
-    parted_steps: int = 700
+    shared_steps: int = 900  # before the ways part: no adversary yet
+    parted_steps: int = 550
     value_share: float = 30.0  # on means, where the paper sums; with the terms below about as large as the adversary
     velocity_share: float = 30.0
     distance_share: float = 0.1  # per mm
     adversary_share: float = 0.1
     penalty: float = 10.0
-    far_share: float = 0.4  # how much truth counts where nothing settles the pose; the rest is left to the adversary
+    spectrum_share: float = 40.0
+    judge_steps: int = 2  # of the discriminator for one of the generator
+    far_share: float = 0.25  # how much truth counts where nothing settles the pose; the rest is left to the adversary
     average: float = 0.995  # of the generator's weights over steps: the network that is kept
     help: Help = field(default_factory=Help)
 
@@ -85,6 +87,26 @@ def fill_losses(made: Tensor, batch: Batch, distances: torch.nn.Module, settings
     }
 
 
+def spectrum_gap(made: Tensor, batch: Batch, scale: Tensor) -> Tensor:
+    """Return how far the amplitudes of made motion in the holes are from the truth's, whatever their phases.
+
+    Mean over shapes, windows of two lengths and frequencies above zero, in units of the shapes' spread. A fill that
+    moves as much as the truth but at other moments costs nothing here, where an error per frame asks for stillness.
+    """
+    gaps = []
+    for length in (16, 64):
+        taper = torch.hann_window(length)
+        share = batch.hole.unfold(1, length, length // 4).mean(dim=3)  # (batch, windows, 52)
+        amplitudes = []
+        for motion in (made, batch.truth):
+            cut = (motion / scale).unfold(1, length, length // 4)  # (batch, windows, 52, length)
+            power = torch.fft.rfft((cut - cut.mean(dim=3, keepdim=True)) * taper).abs().square()[..., 1:]
+            inside = (power * share[..., None]).sum(dim=1) / share.sum(dim=1)[..., None].clamp(min=1e-6)
+            amplitudes.append(torch.sqrt(inside + 1e-4) / taper.sum())
+        gaps.append((amplitudes[0] - amplitudes[1]).abs().mean())
+    return torch.stack(gaps).mean()
+
+
 class Trainer:
     """One way of training, with or without an adversary, resumable after any `save`."""
 
@@ -106,13 +128,12 @@ class Trainer:
         self.step = 0
 
     def _face_scale(self) -> Tensor:
-        sample = torch.tensor(np.concatenate([one.weights[::7] for one in self._material]), dtype=torch.float32)
-        apart = self._distances(sample).std(dim=0).clamp(min=0.1)
-        return torch.cat([torch.tensor(self.statistics.scale, dtype=torch.float32), apart])
+        sample = torch.tensor(np.concatenate([one.weights for one in self._material[::5]]), dtype=torch.float32)
+        return see(sample[None], self._distances)[0].std(dim=0).clamp(min=0.005)
 
     def _seen(self, weights: Tensor) -> Tensor:
-        """Return what the discriminator is fed: weights beside their six distances, in their own units of spread."""
-        return torch.cat([weights, self._distances(weights)], dim=-1) / self.discriminator.scale
+        """Return what the discriminator is fed, in units of its own spread."""
+        return see(weights, self._distances) / self.discriminator.scale
 
     def advance(self) -> dict[str, float]:
         """Take one step; returns every loss term by name."""
@@ -167,9 +188,13 @@ class Trainer:
             for name, term in losses.items()
         }
         fakes = [self._seen(made), self._seen(other)]
-        judged = self._judge_step(real, [fake.detach() for fake in fakes], hole)
+        judged: dict[str, Tensor] = {}
+        for _ in range(self.settings.judge_steps):
+            judged = self._judge_step(real, [fake.detach() for fake in fakes], hole)
         score = torch.cat([self.discriminator(fake) for fake in fakes]).mean()
-        return terms | {"adversary": -self.settings.adversary_share * score} | judged
+        terms["adversary"] = -self.settings.adversary_share * score
+        apart = torch.stack([spectrum_gap(one, batch, self.generator.scale) for one in (made, other)]).mean()
+        return terms | {"spectrum": self.settings.spectrum_share * apart} | judged
 
     def _judge_step(self, real: Tensor, fakes: list[Tensor], hole: Tensor) -> dict[str, Tensor]:
         fake = fakes[0]
@@ -179,9 +204,7 @@ class Trainer:
         share = torch.rand(len(real), 1, 1)
         between = (share * real + (1 - share) * fake).requires_grad_()
         slope = torch.autograd.grad(self.discriminator(between).sum(), between, create_graph=True)[0]
-        masked = slope * torch.cat(
-            [hole, hole.amax(dim=2, keepdim=True).expand(-1, -1, slope.shape[2] - hole.shape[2])], 2
-        )
+        masked = slope * hole.amax(dim=2, keepdim=True)
         penalty = self.settings.penalty * (masked.flatten(1).norm(dim=1) - 1).square().mean()
         self._judge.zero_grad()
         (hinge + penalty).backward()

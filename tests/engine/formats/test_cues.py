@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import contextlib
 import json
 from pathlib import Path
 
@@ -112,7 +113,5 @@ def test_bad_files_get_one_sentence(tmp_path: Path, ending: str, content: str | 
 @given(content=st.binary(max_size=200), ending=st.sampled_from([".textgrid", ".tsv", ".json", ".xml"]))
 def test_any_bytes_are_read_or_refused_in_a_sentence(tmp_path_factory, content: bytes, ending: str) -> None:
     path = written(tmp_path_factory.mktemp("cues"), content, ending)
-    try:
+    with contextlib.suppress(FormatError):
         read_cues(path)
-    except FormatError:
-        pass
