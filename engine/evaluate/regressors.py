@@ -1,6 +1,6 @@
 """Regressors that make a whole face of a few control curves, for BSS20 table 4: HSK16 and BSBS19, with 8 or with 3 controls.
 
-Trained on the very windows that the filling network sees, with equal numbers of steps.
+Trained on the very windows that the filling network sees, for as many frames in all.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from engine.inpaint.material import Help, Performance, draw, performances
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
 from engine.take import SHAPES, Array
 
-FRAMES, BATCH, STEPS, SEED = 64, 64, 2500, 0
+FRAMES, BATCH, STEPS, SEED = 64, 64, 1500, 0  # as many frames in all as the filling network is trained on
 ALIGNMENT = 4
 EIGHT = tuple(CONTROL_INDEX)
 THREE = ("lips_vertical", "lips_horizontal", "eyelid_left")  # BSS20 section 5.2: mouth opening, corners, one eyelid

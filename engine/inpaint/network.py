@@ -65,6 +65,7 @@ class Generator(nn.Module):
             bidirectional=True,
             dropout=config.dropout,
         )
+        self.drop = nn.Dropout(config.dropout)
         self.dense = nn.Linear(2 * config.hidden, len(SHAPES))
         width = config.filter_frames
         self.filter = nn.Conv1d(config.features + config.noise, len(SHAPES), width, padding=width // 2)
@@ -72,12 +73,16 @@ class Generator(nn.Module):
             nn.init.zeros_(parameter)
         self.register_buffer("scale", torch.ones(len(SHAPES)))
 
+    def seen(self, features: Tensor, noise: Tensor) -> Tensor:
+        """Return what both paths look at, (batch, frames, FEATURES + noise)."""
+        return torch.cat([features.clamp(-_WIDEST, _WIDEST), noise], dim=-1)
+
     def forward(self, features: Tensor, noise: Tensor) -> Tensor:
         """Return motion, (batch, frames, 52), of features, (batch, frames, FEATURES), and noise of the same frames."""
-        seen = torch.cat([features.clamp(-_WIDEST, _WIDEST), noise], dim=-1)
+        seen = self.seen(features, noise)
         remembered, _ = self.recurrent(seen)  # (batch, frames, 2 * hidden)
         near = self.filter(seen.transpose(1, 2)).transpose(1, 2)  # (batch, frames, 52)
-        motion: Tensor = (self.dense(remembered) + near) * self.scale
+        motion: Tensor = (self.dense(self.drop(remembered)) + near) * self.scale
         return motion
 
 

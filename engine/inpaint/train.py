@@ -33,8 +33,9 @@ class Settings:
     hidden: int = 128
     batch: int = 16
     rate: float = 1e-3  # of the discriminator, and of the generator at the parting of the ways; twice that before
-    shared_steps: int = 900  # before the ways part: no adversary yet
-    parted_steps: int = 550
+    shared_steps: int = 1400  # before the ways part: no adversary yet
+    parted_steps: int = 400
+    filter_pace: float = 0.1  # of the filter's rate to the rest's: it has many inputs
     value_share: float = 30.0  # on means, where the paper sums; with the terms below about as large as the adversary
     velocity_share: float = 30.0
     distance_share: float = 0.1  # per mm
@@ -123,7 +124,10 @@ class Trainer:
         )
         self.discriminator = Discriminator(settings.frames)
         self.discriminator.scale.copy_(self._face_scale())
-        self._make = torch.optim.Adam(self.generator.parameters(), lr=settings.rate)
+        rest = [value for name, value in self.generator.named_parameters() if not name.startswith("filter")]
+        self._make = torch.optim.Adam(
+            [{"params": rest}, {"params": self.generator.filter.parameters()}], lr=settings.rate
+        )
         self._judge = torch.optim.Adam(self.discriminator.parameters(), lr=settings.rate, betas=(0.5, 0.9))
         self.step = 0
 
@@ -138,6 +142,7 @@ class Trainer:
     def advance(self) -> dict[str, float]:
         """Take one step; returns every loss term by name."""
         settings, part = self.settings, self.step >= self.settings.shared_steps
+        self.generator.filter.requires_grad_(part)
         rng = np.random.default_rng([settings.seed, self.step])
         torch.manual_seed(settings.seed * 1_000_003 + self.step)
         against = part and self._adversary
@@ -162,8 +167,8 @@ class Trainer:
         """Halve the rate once the ways part and let it fall to a tenth of that by the end."""
         done = (self.step - self.settings.shared_steps) / max(1, self.settings.parted_steps)
         rate = self.settings.rate * (1 - 0.9 * done if part else 2.0)
-        for group in self._make.param_groups:
-            group["lr"] = rate
+        for group, pace in zip(self._make.param_groups, (1.0, self.settings.filter_pace), strict=True):
+            group["lr"] = rate * pace
 
     def _generate(self, batch: Batch) -> Tensor:
         noise = torch.randn(len(batch.truth), 1, self.generator.config.noise).repeat(1, batch.truth.shape[1], 1)
