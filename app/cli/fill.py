@@ -11,9 +11,8 @@ from engine.errors import EditError, FormatError
 from engine.formats import read_take, write_take
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from engine.inpaint.request import Pose
+    from engine.take import Array
 
 
 def fill(
@@ -107,8 +106,8 @@ def _number(text: str) -> float:
         raise EditError(f"{text!r} is not a number.") from None
 
 
-def _controls(texts: list[str], spans: list[tuple[int, int]]) -> dict[str, np.ndarray | float]:
-    curves: dict[str, np.ndarray | float] = {}
+def _controls(texts: list[str], spans: list[tuple[int, int]]) -> dict[str, Array | float]:
+    curves: dict[str, Array | float] = {}
     for text in texts:
         name, _, curve = text.partition("=")
         if not curve:
@@ -119,14 +118,14 @@ def _controls(texts: list[str], spans: list[tuple[int, int]]) -> dict[str, np.nd
     return curves
 
 
-def _curve(text: str, spans: list[tuple[int, int]]) -> np.ndarray | float:
+def _curve(text: str, spans: list[tuple[int, int]]) -> Array | float:
     """Return a constant, a line through frame:mm points, or the numbers in a file, one per frame of the span."""
     import numpy as np
 
     if Path(text).is_file():
         try:
-            values: np.ndarray = np.loadtxt(text, ndmin=1)
-            return values
+            numbers: Array = np.loadtxt(text, ndmin=1)
+            return numbers
         except (ValueError, OSError, UnicodeDecodeError):
             raise FormatError(f"{Path(text).name} is not a list of numbers.") from None
     if ":" not in text:
@@ -135,7 +134,8 @@ def _curve(text: str, spans: list[tuple[int, int]]) -> np.ndarray | float:
         raise EditError("A curve by frame is for one span.", "Fill the spans one after the other.")
     points = sorted((_number(part.partition(":")[0]), _number(part.partition(":")[2])) for part in text.split(","))
     at, values = np.array(points).T
-    return np.interp(np.arange(*spans[0]), at, values)
+    line: Array = np.interp(np.arange(*spans[0]), at, values)
+    return line
 
 
 def register(app: typer.Typer) -> None:

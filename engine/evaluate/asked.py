@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.controls import CONTROL_INDEX, bundled_measurer
 from engine.corpus import Piece
-from engine.evaluate.inpaint import pieces_to_measure
+from engine.evaluate.inpaint import Method, pieces_to_measure
 from engine.evaluate.motion import CLOSED_MM
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import bundled
@@ -61,7 +61,7 @@ def events(pieces: Sequence[Piece], kind: str) -> list[Event]:
             if room and stop - start <= LONGEST_S[kind] * MODEL_FPS:
                 peak = start + int(np.argmin(signal[start:stop]))
                 found.append(Event(kind, piece.weights, start, stop, peak))
-    chosen = np.unique(np.linspace(0, len(found) - 1, MOST).round().astype(int)) if found else []
+    chosen: list[int] = np.unique(np.linspace(0, len(found) - 1, MOST).round().astype(int)).tolist() if found else []
     return [found[index] for index in chosen]
 
 
@@ -84,7 +84,7 @@ def masked(event: Event, steering: str) -> tuple[Gap, slice]:
 def table(data: Path | None, report: Callable[[str], None]) -> list[dict[str, Any]]:
     """Return the share of events that happen again, per kind, steering and method."""
     pieces = pieces_to_measure(data)
-    ways = {"gan": lambda gap: bundled().fill(gap)[0], "bridge": lambda gap: bridge(gap.known)}
+    ways: dict[str, Method] = {"gan": lambda gap: bundled().fill(gap)[0], "bridge": lambda gap: bridge(gap.known)}
     rows = []
     for kind in LONGEST_S:
         found = events(pieces, kind)

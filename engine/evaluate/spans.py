@@ -20,18 +20,24 @@ _AROUND = 8  # known frames on either side by which a recorded segment is chosen
 
 
 def _each(gap: Gap, make: Callable[[Array, Array, Array], Array]) -> Array:
-    """Fill shape by shape: `make(known frames, their values, unknown frames)`."""
+    """Fill shapes that are unknown at the same frames together: `make(known frames, their values, unknown frames)`."""
     made, frames = gap.known.copy(), np.arange(len(gap.known), dtype=np.float64)
-    for column in range(made.shape[1]):
-        free = np.isnan(gap.known[:, column])
-        if free.any():
-            made[free, column] = make(frames[~free], gap.known[~free, column], frames[free]) if not free.all() else 0.0
-    return np.where(np.isnan(gap.known), np.clip(made, 0.0, 1.0), gap.known)
+    free = np.isnan(gap.known)
+    for pattern in np.unique(free, axis=1).T:
+        columns = np.flatnonzero((free == pattern[:, None]).all(axis=0))
+        if pattern.any():
+            known = gap.known[np.ix_(~pattern, columns)]
+            made[np.ix_(pattern, columns)] = 0.0 if pattern.all() else make(frames[~pattern], known, frames[pattern])
+    return np.where(free, np.clip(made, 0.0, 1.0), gap.known)
 
 
 def linear(gap: Gap) -> Array:
     """Return straight lines between known values."""
-    return _each(gap, lambda at, values, free: np.interp(free, at, values))
+    return _each(gap, _straight)
+
+
+def _straight(at: Array, values: Array, free: Array) -> Array:
+    return np.stack([np.interp(free, at, curve) for curve in values.T], axis=1)
 
 
 def hermite(gap: Gap) -> Array:
@@ -39,17 +45,15 @@ def hermite(gap: Gap) -> Array:
 
     def make(at: Array, values: Array, free: Array) -> Array:
         if len(at) < 2:
-            return np.full(len(free), values[0])
-        slopes = np.gradient(values, at)
+            return np.repeat(values, len(free), axis=0)
+        slopes = np.gradient(values, at, axis=0)
         wide = np.diff(at) > 1
-        seams = np.flatnonzero(wide)
-        for seam in seams:  # beside a hole, the slope of the known side where there is one
+        for seam in np.flatnonzero(wide):  # beside a hole, the slope of the known side where there is one
             if seam > 0 and not wide[seam - 1]:
                 slopes[seam] = values[seam] - values[seam - 1]
             if seam + 2 < len(at) and not wide[seam + 1]:
                 slopes[seam + 1] = values[seam + 2] - values[seam + 1]
-        curve = CubicHermiteSpline(at, values, slopes)(np.clip(free, at[0], at[-1]))
-        return np.asarray(curve)
+        return np.asarray(CubicHermiteSpline(at, values, slopes)(np.clip(free, at[0], at[-1])))
 
     return _each(gap, make)
 
@@ -61,10 +65,9 @@ def spline(gap: Gap) -> Array:
         near = (at >= free[0] - 30) & (at <= free[-1] + 30)
         at, values = at[near], values[near]
         if len(at) < 5:
-            return np.interp(free, at, values)
+            return _straight(at, values, free)
         curve = make_smoothing_spline(at, values, lam=SMOOTHING)
-        offset = np.interp(free, at, values - curve(at))
-        return np.asarray(curve(np.clip(free, at[0], at[-1])) + offset)
+        return np.asarray(curve(np.clip(free, at[0], at[-1])) + _straight(at, values - curve(at), free))
 
     return _each(gap, make)
 

@@ -13,6 +13,7 @@ from engine.take import SHAPES, Array
 
 RISE_FRAMES = 2.5  # how soon beside a known frame the network may move the face: value and slope stay as they are there
 GUIDE_SMOOTHING = 8  # passes; the error of the ground alone falls up to 12 on validation takes, but blinks grow blunt
+GUIDE_FRAMES = 2.0  # how far from known frames a guide begins to tell more than they do; of 1 ... 8 on validation takes
 _NEAR_FRAMES = 8.0  # scale on which nearness to known frames is shown to the network
 _SETTLED_FRAMES = 12.0  # how far from known frames motion is still largely settled by them
 _CONTROL_NOISE = 1.0  # mm; what a control curve is trusted to, of 0.1 ... 2 on validation takes
@@ -106,7 +107,7 @@ def ground(gap: Gap, statistics: Statistics) -> Ground:
     """
     distance = distance_frames(gap.known)
     rise = 1 - np.exp(-((distance / RISE_FRAMES) ** 2))
-    base = _along_guide(gap, statistics)
+    base = _along_guide(gap, distance, statistics)
     base = np.where(np.isnan(gap.known), _bent(base, rise, gap.controls, statistics), gap.known)
     nearest = _nearest(gap, distance)
     guided = np.isfinite(gap.guide).any(axis=1) | np.isfinite(gap.controls).any(axis=1) | gap.visemes.any(axis=1)
@@ -120,13 +121,14 @@ def _nearest(gap: Gap, distance: Array) -> Array:
     return np.where(np.isfinite(nearest), nearest, 0.0)
 
 
-def _along_guide(gap: Gap, statistics: Statistics) -> Array:
+def _along_guide(gap: Gap, distance: Array, statistics: Statistics) -> Array:
     """Return curves through all that is known, along the guide without its jitter, and at rest where nothing is known."""
     plain = np.where(np.isnan(gap.known).all(axis=0), statistics.mean, bridge(gap.known))
     if not np.isfinite(gap.guide).any():
         return plain
     guided = smoothed(np.where(np.isfinite(gap.guide), gap.guide, plain), GUIDE_SMOOTHING)
-    return guided + bridge(gap.known - guided)
+    trust = np.exp(-GUIDE_FRAMES / np.maximum(distance, 1e-3))
+    return plain + trust * (guided + bridge(gap.known - guided) - plain)
 
 
 def smoothed(curves: Array, passes: int) -> Array:

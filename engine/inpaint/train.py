@@ -125,9 +125,8 @@ class Trainer:
         self.discriminator = Discriminator(settings.frames)
         self.discriminator.scale.copy_(self._face_scale())
         rest = [value for name, value in self.generator.named_parameters() if not name.startswith("filter")]
-        self._make = torch.optim.Adam(
-            [{"params": rest}, {"params": self.generator.filter.parameters()}], lr=settings.rate
-        )
+        groups: list[dict[str, Any]] = [{"params": rest}, {"params": self.generator.filter.parameters()}]
+        self._make = torch.optim.Adam(groups, lr=settings.rate)
         self._judge = torch.optim.Adam(self.discriminator.parameters(), lr=settings.rate, betas=(0.5, 0.9))
         self.step = 0
 
