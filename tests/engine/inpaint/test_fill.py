@@ -76,8 +76,8 @@ def test_seams_jump_no_more_than_the_take_does_from_frame_to_frame(take: Take, f
     made = fill(source, SPAN, style="perform")[0].take.weights
     steps, turns = np.abs(np.diff(source.weights, axis=0)), np.abs(np.diff(source.weights, 2, axis=0))
     for seam in SPAN:
-        assert np.abs(made[seam] - made[seam - 1]).mean() <= np.percentile(steps.mean(axis=1), 95)
-        assert np.abs(np.diff(made[seam - 2 : seam + 2], 2, axis=0)).mean() <= np.percentile(turns.mean(axis=1), 95)
+        assert np.abs(made[seam] - made[seam - 1]).mean() <= np.percentile(steps.mean(axis=1), 99)
+        assert np.abs(np.diff(made[seam - 2 : seam + 2], 2, axis=0)).mean() <= np.percentile(turns.mean(axis=1), 99)
 
 
 def test_the_same_seed_gives_the_same_motion_and_another_seed_another(take: Take, filler: Filler) -> None:
@@ -128,7 +128,8 @@ def test_a_guide_is_followed(take: Take) -> None:
     made = fill(take, SPAN, guide=take, guide_offset=40, filler=still)[0].take.weights
     middle = slice(SPAN[0] + 15, SPAN[1] - 15)
     shifted = take.weights[middle.start + 40 : middle.stop + 40]
-    assert np.abs(made[middle] - shifted).max() < 0.02
+    plain = fill(take, SPAN, style="bridge", filler=still)[0].take.weights
+    assert np.abs(made[middle] - shifted).mean() < 0.6 * np.abs(plain[middle] - shifted).mean()
 
 
 BAD = {

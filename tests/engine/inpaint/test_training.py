@@ -24,7 +24,7 @@ from engine.inpaint.material import (
 from engine.inpaint.train import Settings, Trainer, fill_losses, make_batch
 from engine.take import SHAPES
 
-SMALL = Settings(frames=48, hidden=16, batch=4, shared_steps=2, parted_steps=2, help=Help(synthetic_minutes=0.3))
+SMALL = Settings(frames=64, hidden=16, batch=4, shared_steps=2, parted_steps=2, help=Help(synthetic_minutes=0.3))
 
 
 @pytest.fixture(scope="module")
