@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from functools import lru_cache
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import torch
 from engine.inpaint.gap import Gap, Statistics, ground
 from engine.inpaint.network import Generator, GeneratorConfig
 from engine.models.checkpoint import MODELS, load_model, save_model
+from engine.models.threads import one_thread
 from engine.take import Array
 
 _STATISTICS = ("mean", "scale", "rest", "spread", "cross")
@@ -37,7 +39,7 @@ class Filler:
         under = ground(gap, self.statistics)
         features = torch.from_numpy(under.features)[None].expand(len(seeds), -1, -1)
         noise = torch.stack([self._noise(seed, len(under.base)) for seed in seeds])
-        with torch.inference_mode():
+        with torch.inference_mode(), one_thread():
             motion = self.generator(features, noise).numpy().astype(np.float64)
         made = np.clip(under.base + under.rise * motion, 0.0, 1.0)
         return np.where(np.isnan(gap.known), made, gap.known)
@@ -52,8 +54,6 @@ class Filler:
 
 def save_filler(path: Path, filler: Filler) -> None:
     """Write a filler so that `load` rebuilds it."""
-    from dataclasses import asdict
-
     tensors = dict(filler.generator.state_dict())
     for name in _STATISTICS:
         tensors[f"statistics.{name}"] = torch.tensor(getattr(filler.statistics, name))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -252,8 +252,6 @@ class Trainer:
 
 def _trusting(settings: Settings) -> Settings:
     """Return settings under which truth counts everywhere: without an adversary nothing else would."""
-    from dataclasses import replace
-
     return replace(settings, far_share=1.0)
 
 
