@@ -12,13 +12,15 @@ from engine.controls import CONTROL_INDEX, bundled_measurer
 from engine.corpus import Piece
 from engine.evaluate.inpaint import pieces_to_measure
 from engine.evaluate.motion import npss
-from engine.evaluate.regressors import SETS, load
+from engine.evaluate import regressors
+from engine.evaluate.baselines import bsbs19, hsk16
 from engine.inpaint.gap import gap_of
 from engine.inpaint.infer import bundled
 from engine.take import MODEL_FPS, SHAPES, Array
 
 Row = dict[str, Any]
 Method = Callable[[Array], Array]
+SETS = {"8": tuple(CONTROL_INDEX), "3": regressors.THREE}
 _STRETCH = 200  # frames whose spectra are compared, as long as the network's training windows
 _SEEN = np.array(["Look" not in name for name in SHAPES])  # no control tells where the eyes look
 
@@ -33,7 +35,11 @@ def methods(controls: str) -> dict[str, Method]:
         nothing = np.full((len(curves), len(SHAPES)), np.nan)
         return np.asarray(bundled().fill(gap_of(nothing, controls=asked))[0])
 
-    return {"gan": generated, "bsbs19": load("bsbs19", controls).infer, "hsk16": load("hsk16", controls).infer}
+    if controls == "8":
+        others: dict[str, Method] = {"bsbs19": bsbs19.load().infer, "hsk16": hsk16.load().infer}
+    else:
+        others = {name: regressors.load(name).infer for name in regressors.KINDS}
+    return {"gan": generated} | others
 
 
 def table(data: Path | None, report: Callable[[str], None]) -> list[Row]:
