@@ -2,14 +2,14 @@
 VENV := .venv
 PYTHON := $(VENV)/bin/python
 APT := libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri libgles2 libxkbcommon0 libdbus-1-3 libfontconfig1 fonts-dejavu-core \
-  libxkbcommon-x11-0 libxcb-cursor0 libxcb-icccm4 libxcb-image0 libxcb-keysyms1 libxcb-render-util0 libxcb-shape0 libxcb-xkb1
+  libxkbcommon-x11-0 libxcb-cursor0 libxcb-icccm4 libxcb-image0 libxcb-keysyms1 libxcb-render-util0 libxcb-shape0 libxcb-xkb1 libportaudio2
 STAMP := $(VENV)/.installed
 
 .PHONY: run test lint setup clean
 
 setup: $(STAMP)
 
-# Debian's packages give the offscreen renderer its software GL and Qt its libraries. Skipped where apt-get is absent.
+# Debian's packages give the offscreen renderer its software GL, Qt its libraries and playback its PortAudio. Skipped where apt-get is absent.
 $(STAMP): pyproject.toml Makefile
 	@if command -v apt-get >/dev/null && ! dpkg -s $(APT) >/dev/null 2>&1; then \
 	  apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(APT); fi

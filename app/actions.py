@@ -11,7 +11,7 @@ class Action:
 
     Attributes
     ----------
-    name : method of the main window that does it
+    name : method that does it, of the window, its edit actions or its time actions
     title : in menus; with `short` on the toolbar
     menu : the menu it is in
     keys : shortcuts
@@ -31,8 +31,11 @@ class Action:
 
 ACTIONS: tuple[Action, ...] = (
     Action("open_take", "Open…", "File", ("Ctrl+O",), "Open", twin="retake FILE"),
-    Action("save", "Save", "File", ("Ctrl+S",), "Save", twin="retake edit -o"),
-    Action("save_as", "Save as…", "File", ("Ctrl+Shift+S",), twin="retake edit -o"),
+    Action("save", "Save project", "File", ("Ctrl+S",), "Save", twin="commands read projects and write takes"),
+    Action("save_as", "Save project as…", "File", ("Ctrl+Shift+S",), twin="commands read projects and write takes"),
+    Action("export", "Export take…", "File", ("Ctrl+E",), "Export", twin="retake edit -o"),
+    Action("attach_audio", "Attach sound…", "File", twin="a file beside the take under its name is found"),
+    Action("attach_video", "Attach a reference video…", "File", twin="a file beside the take under its name is found"),
     Action("close", "Quit", "File", ("Ctrl+Q",), twin="ends the program"),
     Action("undo", "Undo", "Edit", ("Ctrl+Z",), "↶", twin="a command writes a new file; the old one stays"),
     Action("redo", "Redo", "Edit", ("Ctrl+Shift+Z", "Ctrl+Y"), "↷", twin="a command writes a new file"),
@@ -40,12 +43,24 @@ ACTIONS: tuple[Action, ...] = (
     Action("cancel", "Drop what is under way", "Edit", ("Escape",), twin="Ctrl+C"),
     Action("wider_brush", "Wider brush", "Edit", ("]",), twin="retake edit --frames"),
     Action("narrower_brush", "Narrower brush", "Edit", ("[",), twin="retake edit --frames"),
+    Action("copy", "Copy", "Edit", ("Ctrl+C",), twin="works with paste in the window"),
+    Action("paste", "Paste at the playhead", "Edit", ("Ctrl+V",), twin="works with copy in the window"),
     Action("drag_tool", "Drag", "Tools", ("V",), "Drag", True, twin="retake edit"),
+    Action("draw_tool", "Draw", "Tools", ("D",), "Draw", True, twin="retake edit --set"),
+    Action("scale_tool", "Scale", "Tools", ("S",), "Scale", True, twin="retake edit --scale"),
+    Action("pin_tool", "Pin", "Tools", ("K",), "Pin", True, twin="retake pin"),
+    Action("mark_tool", "Mark", "Tools", ("M",), "Mark", True, twin="retake fill --frames A:B"),
+    Action("fill", "Fill the span", "Tools", ("F",), "Fill", twin="retake fill"),
+    Action("accept", "Keep the fill", "Tools", ("Return", "Enter"), twin="retake fill --seed"),
+    Action("clean_tool", "Clean", "Tools", ("C",), "Clean", True, twin="retake clean"),
+    Action("smooth", "Smooth", "Tools", ("Ctrl+B",), twin="retake smooth"),
+    Action("expand_lane", "Show or hide the weights below", "View", ("W",)),
     Action("play", "Play or pause", "Playback", ("Space",), "▶", True, twin="retake render -o OUT.mp4"),
     Action("play_backwards", "Play backwards", "Playback", ("J",)),
-    Action("stop", "Stop", "Playback", ("K",)),
+    Action("stop", "Stop", "Playback", ("Shift+K",)),
     Action("play_forwards", "Play forwards", "Playback", ("L",)),
     Action("loop", "Loop", "Playback", ("Ctrl+L",), "Loop", True),
+    Action("mute", "Mute", "Playback", ("Ctrl+M",), checkable=True),
     Action("next_frame", "Next frame", "Playback", ("Right",)),
     Action("previous_frame", "Previous frame", "Playback", ("Left",)),
     Action("first_frame", "First frame", "Playback", ("Shift+Left",)),
@@ -65,9 +80,48 @@ ACTIONS: tuple[Action, ...] = (
     Action("about", "About Retake", "Help", (), twin="retake --version"),
 )
 TOOLBAR: tuple[tuple[str, ...], ...] = (
-    ("open_take", "save"),
+    ("open_take", "save", "export"),
     ("undo", "redo"),
-    ("drag_tool",),
+    ("drag_tool", "draw_tool", "scale_tool", "pin_tool", "mark_tool"),
+    ("fill", "clean_tool"),
     ("play", "loop"),
 )
+# Keys of programs that hands already know; what a preset does not name keeps Retake's own.
+PRESETS: dict[str, dict[str, tuple[str, ...]]] = {
+    "Retake": {},
+    "Blender": {
+        "play": ("Space", "Alt+A"),
+        "first_frame": ("Shift+Left", "Ctrl+Shift+Down"),
+        "scale_tool": ("S",),
+        "drag_tool": ("G",),
+        "set_in": ("Ctrl+Home",),
+        "set_out": ("Ctrl+End",),
+        "pin_tool": ("I",),
+        "next_span": ("Down", "PgUp"),
+        "previous_span": ("Up", "PgDown"),
+        "undo": ("Ctrl+Z",),
+        "redo": ("Ctrl+Shift+Z",),
+    },
+    "Maya": {
+        "play": ("Alt+V", "Space"),
+        "drag_tool": ("W",),
+        "scale_tool": ("R",),
+        "pin_tool": ("S",),
+        "expand_lane": ("Shift+W",),
+        "next_frame": ("Right", "Alt+."),
+        "previous_frame": ("Left", "Alt+,"),
+        "next_span": ("Down", "."),
+        "previous_span": ("Up", ","),
+        "frame_all": ("Home", "A"),
+        "undo": ("Ctrl+Z", "Z"),
+        "redo": ("Ctrl+Y", "Shift+Z"),
+    },
+}
+
+
+def keys_of(entry: Action, preset: str) -> tuple[str, ...]:
+    """Return an action's shortcuts under a preset."""
+    return PRESETS.get(preset, {}).get(entry.name, entry.keys)
+
+
 MENUS: tuple[str, ...] = ("File", "Edit", "Tools", "Playback", "View", "Help")

@@ -12,7 +12,6 @@ from PySide6.QtCore import QObject, QThread, Signal
 from engine.errors import EngineError
 
 log = logging.getLogger(__name__)
-_NOTHING = object()
 
 
 class LatestWins(QObject):
@@ -33,7 +32,7 @@ class LatestWins(QObject):
         super().__init__()
         self._job, self._close = job, close
         self._wake = threading.Condition()
-        self._waiting: object = _NOTHING
+        self._waiting: dict[str, object] = {}  # by channel, oldest first
         self._working = self._stopping = False
         self._thread = _Thread(self._run)
         self._thread.setObjectName(name)
@@ -43,29 +42,35 @@ class LatestWins(QObject):
     def idle(self) -> bool:
         """Whether nothing waits and nothing runs."""
         with self._wake:
-            return self._waiting is _NOTHING and not self._working
+            return not self._waiting and not self._working
 
-    def submit(self, request: object) -> None:
-        """Ask for a request to be worked on after the one that runs now."""
+    def submit(self, request: object, channel: str = "") -> None:
+        """Ask for a request to be worked on; it replaces the one that waits in its channel, and no other."""
         with self._wake:
-            self._waiting = request
-            self._wake.notify()
+            self._waiting[channel] = request
+            self._wake.notify_all()
+
+    def finish(self) -> None:
+        """Return when nothing waits and nothing runs; results are delivered later, as ever."""
+        with self._wake:
+            self._wake.wait_for(lambda: self._stopping or (not self._waiting and not self._working))
 
     def stop(self) -> None:
         """Finish the running job, then end the thread; returns when it has."""
         with self._wake:
             self._stopping = True
-            self._wake.notify()
+            self._wake.notify_all()
         self._thread.wait()
 
     def _run(self) -> None:
         while True:
             with self._wake:
                 self._working = False
-                self._wake.wait_for(lambda: self._stopping or self._waiting is not _NOTHING)
+                self._wake.notify_all()
+                self._wake.wait_for(lambda: self._stopping or bool(self._waiting))
                 if self._stopping:
                     break
-                request, self._waiting, self._working = self._waiting, _NOTHING, True
+                request, self._working = self._waiting.pop(next(iter(self._waiting))), True
             try:
                 result = self._job(request)
             except EngineError as error:

@@ -67,11 +67,39 @@ def render_job() -> list[Speed]:
 
 def window_job() -> list[Speed]:
     """Measure from the mouse event to the new face on screen, on an 8 s and on a 60 min take."""
-    short, long = _drag_to_preview(performance_of(8.0)), _drag_to_preview(performance_of(3600.0))
+    long_take = performance_of(3600.0)
+    short, long = _drag_to_preview(performance_of(8.0)), _drag_to_preview(long_take)
     return [
         Speed("drag_to_preview_ms_p95", short, "ms", 50.0),
         Speed("drag_to_preview_60min_ms_p95", long, "ms", 50.0),
+        Speed("curve_repaint_ms_p95", _repaint(long_take, whole=False), "ms", 16.0),
+        Speed("curve_repaint_60_curves_60min_ms_p95", _repaint(long_take, whole=True), "ms", 50.0),
     ]
+
+
+def _repaint(take: Take, *, whole: bool) -> float:
+    """Measure panning the eight lanes by a frame, or those and every raw weight over the whole of a long take."""
+    from PySide6.QtWidgets import QApplication
+
+    from app.main_window import MainWindow
+
+    application = QApplication.instance() or QApplication(["retake"])
+    window = MainWindow(take)
+    window.show()
+    if whole:
+        for control in range(8):
+            window.session.expand(control)
+        window.session.set_view(0.0, len(take) - 1000.0)
+    application.processEvents()
+
+    def pan(index: int) -> None:
+        first, last = window.session.view
+        window.session.set_view(first + 1, last + 1)
+        window.curves.viewport().repaint()
+
+    spent = percentile_ms(pan, DRAGS)
+    window.close()
+    return spent
 
 
 def _drag_to_preview(take: Take) -> float:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PySide6.QtGui import QUndoCommand
 
 from app.session import Session
+from engine.controls import bundled_measurer
+from engine.project import MARK, Contents, Edit, Marks, Replayed, mark_edit, marks_of
 
 if TYPE_CHECKING:
     from engine.editing import Patch
+    from engine.take import Array
 
 
 class EditCommand(QUndoCommand):
@@ -21,20 +25,89 @@ class EditCommand(QUndoCommand):
     session : what is edited
     patch : what the gesture came to
     title : what the user did, as the Undo menu shows it
+    marks : what the session's marks become with it, if anything
+    kind, inputs : the verb, and what it was done with, so that a project file can tell and repeat it
     """
 
-    def __init__(self, session: Session, patch: Patch, title: str) -> None:
+    def __init__(
+        self,
+        session: Session,
+        patch: Patch,
+        title: str,
+        *,
+        kind: str = "drag",
+        inputs: Mapping[str, Any] | None = None,
+        marks: Marks | None = None,
+    ) -> None:
         super().__init__(title)
+        self._marks = (session.marks, marks) if marks is not None else None
         rows = slice(patch.start, patch.stop)
         self._session, self._start = session, patch.start
         self._before = (session.take.weights[rows].copy(), session.controls[rows].copy(), session.asked[rows].copy())
         asked = np.where(patch.asked != self._before[1], patch.asked, self._before[2])
         self._after = (patch.weights, patch.reached, asked)
+        self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {})
+
+    @classmethod
+    def restored(cls, session: Session, edit: Edit, before: tuple[Array, Array]) -> EditCommand:
+        """Return the command of a stored edit, which replaced `before`: (n, 52) weights and (n, 8) asked values."""
+        command = cls.__new__(cls)
+        QUndoCommand.__init__(command, edit.title)
+        measure = bundled_measurer().measure
+        command._session, command._start, command.edit = session, edit.start, edit
+        command._marks = None
+        command._before = (before[0], measure(before[0]), before[1])
+        command._after = (edit.weights, measure(edit.weights), edit.asked)
+        return command
 
     def redo(self) -> None:
         """Do it, first or again."""
         self._session.replace_rows(self._start, *self._after)
+        if self._marks is not None:
+            self._session.set_marks(self._marks[1])
 
     def undo(self) -> None:
         """Take it back."""
         self._session.replace_rows(self._start, *self._before)
+        if self._marks is not None:
+            self._session.set_marks(self._marks[0])
+
+
+class MarkCommand(QUndoCommand):
+    """Puts other spans, pins or notes in place.
+
+    Parameters
+    ----------
+    session : what is marked
+    marks : what it shall hold
+    title : what the user did, as the Undo menu shows it
+    """
+
+    def __init__(self, session: Session, marks: Marks, title: str) -> None:
+        super().__init__(title)
+        self._session, self._before, self._after = session, session.marks, marks
+        self.edit = mark_edit(title, self._before, marks)
+
+    @classmethod
+    def restored(cls, session: Session, edit: Edit) -> MarkCommand:
+        """Return the command of a stored edit."""
+        command = cls.__new__(cls)
+        QUndoCommand.__init__(command, edit.title)
+        command._session, command.edit = session, edit
+        command._before, command._after = marks_of(edit.inputs["before"]), marks_of(edit.inputs["after"])
+        return command
+
+    def redo(self) -> None:
+        """Do it, first or again."""
+        self._session.set_marks(self._after)
+
+    def undo(self) -> None:
+        """Take it back."""
+        self._session.set_marks(self._before)
+
+
+def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[QUndoCommand]:
+    """Yield the commands of a project's edits, oldest first."""
+    for edit, before in zip(contents.edits, state.before, strict=True):
+        is_mark = edit.kind == MARK
+        yield MarkCommand.restored(session, edit) if is_mark else EditCommand.restored(session, edit, before)

@@ -1,36 +1,38 @@
-"""Edits under way: asked curves go to the networks on one background thread and come back as the session's draft."""
+"""Edits under way: each is worked out on one background thread and comes back as the session's draft."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
 from app.commands import EditCommand
 from app.session import Change, Session
+from engine.project import Marks
 from engine.take import Array, Take
 
 if TYPE_CHECKING:
     from engine.editing import Dragger, Patch
 
+    Verb = Callable[[Dragger], Patch]
+
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """Asked curves, (n, 8) in mm, for the frames of a take from `start`; `since` is when the user asked."""
+    """A verb to carry out on a take whose controls, (frames, 8), are known; `since` is when the user asked."""
 
     take: Take
     controls: Array
-    start: int
-    asked: Array
-    exact: bool
+    verb: Verb
     since: float = field(default_factory=time.perf_counter)
 
 
 class Inference(QObject):
-    """Turns asked curves into drafts while dragging, and the last draft into one undo step on release.
+    """Turns what the user asks for into drafts, and the last draft into one undo step.
 
     Parameters
     ----------
@@ -45,6 +47,9 @@ class Inference(QObject):
         self._session = session
         self._dragger: Dragger | None = None
         self._last: Request | None = None
+        self._shown: Request | None = None  # whose result is the draft
+        self._kind, self._inputs = "drag", dict[str, Any]()
+        self._marks: Marks | None = None
         self._title: str | None = None  # set on release: the step to make of the last request's result
         self.since = 0.0  # when the draft on screen was asked for
         self._work = LatestWins(self._infer, name="inference")
@@ -57,25 +62,44 @@ class Inference(QObject):
         """Whether an edit is under way."""
         return self._last is not None
 
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is being worked out."""
+        return self._work.idle
+
     def warm_up(self) -> None:
         """Load the networks, after the window shows, so that the first drag is as fast as the next."""
         self._work.submit(None)
 
     def ask(self, start: int, asked: Array) -> None:
         """Show what the face does for asked curves, (n, 8) in mm, on the frames from `start`."""
+        exact = self._session.exact
+        self.run(lambda dragger: dragger.drag(start, asked, exact_curve=exact))
+
+    def run(self, verb: Verb) -> None:
+        """Show what a verb does; it is called on the background thread."""
         if self._title is not None:
             return  # the edit before is being finished; it takes a few milliseconds
-        session = self._session
-        self._last = Request(session.take, session.controls, start, asked, session.exact)
+        self._last = Request(self._session.take, self._session.controls, verb)
         self._work.submit(self._last)
 
-    def finish(self, title: str) -> None:
-        """Make the last asked curves one undo step, as soon as their result is there."""
+    def finish(
+        self,
+        title: str,
+        *,
+        kind: str = "drag",
+        inputs: Mapping[str, Any] | None = None,
+        marks: Marks | None = None,
+    ) -> None:
+        """Make the last asked edit one undo step, as soon as its result is there.
+
+        `kind` and `inputs` are what a project file remembers of it; `marks` is what the session's become with it.
+        """
         if self._last is None:
             return
-        self._title = title
+        self._title, self._kind, self._inputs, self._marks = title, kind, dict(inputs or {}), marks
         draft = self._session.draft
-        if self._work.idle and draft is not None:
+        if draft is not None and self._shown is self._last:
             self._commit(draft)
 
     def cancel(self) -> None:
@@ -96,7 +120,7 @@ class Inference(QObject):
             return None
         if self._dragger is None or self._dragger.take is not request.take:
             self._dragger = editing.Dragger(request.take, request.controls)
-        return self._dragger.drag(request.start, request.asked, exact_curve=request.exact)
+        return request.verb(self._dragger)
 
     def _arrived(self, request: Request | None, patch: Patch | None) -> None:
         if request is None or patch is None:
@@ -104,14 +128,17 @@ class Inference(QObject):
             return
         if self._last is None or request.take is not self._session.take:
             return  # cancelled, or another take was opened meanwhile
-        self.since = request.since
+        self.since, self._shown = request.since, request
         self._session.set_draft(patch)
         if self._title is not None and request is self._last:
             self._commit(patch)
 
     def _commit(self, patch: Patch) -> None:
         title, self._title, self._last = self._title, None, None
-        self._session.undo.push(EditCommand(self._session, patch, title or "edit"))
+        step = EditCommand(
+            self._session, patch, title or "edit", kind=self._kind, inputs=self._inputs, marks=self._marks
+        )
+        self._session.undo.push(step)
 
     def _refused(self, request: object, sentence: str, advice: str) -> None:
         self._last = self._title = None

@@ -7,15 +7,26 @@ from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import QAction, QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence, QShowEvent
+from PySide6.QtGui import (
+    QAction,
+    QActionGroup,
+    QCloseEvent,
+    QDragEnterEvent,
+    QDropEvent,
+    QKeyEvent,
+    QKeySequence,
+    QShowEvent,
+)
 from PySide6.QtWidgets import (
     QApplication,
-    QFileDialog,
     QFrame,
     QHBoxLayout,
     QLabel,
     QMainWindow,
+    QMenu,
     QMessageBox,
+    QScrollArea,
+    QSizePolicy,
     QSplitter,
     QToolButton,
     QVBoxLayout,
@@ -23,24 +34,35 @@ from PySide6.QtWidgets import (
 )
 
 from app import theme
-from app.actions import ACTIONS, MENUS, TOOLBAR
+from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
+from app.clean.section import CleanSection
 from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
+from app.curves.tools import TOOLS
+from app.edit_actions import EditActions
+from app.file_actions import FileActions
 from app.inference import Inference
+from app.inspector.brush import BrushSection
+from app.inspector.facts import FactsSection
 from app.inspector.panel import Inspector
+from app.inspector.smooth import SmoothSection
+from app.inspector.value import ValueSection
+from app.keeper import Keeper
 from app.notices import Notices
+from app.pins.section import PinsSection
+from app.playback.media import Media
 from app.preview.panel import PreviewPanel
+from app.preview.reference import ReferencePanel
 from app.session import Change, Session
 from app.settings import Settings
+from app.spans.filling import Filling
+from app.spans.section import SpansSection
 from app.theme import GRID
-from app.timeline.panel import Timeline, TimeScroll
+from app.time_actions import TimeActions
+from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
-from engine.controls import CONTROLS
-from engine.errors import EngineError
-from engine.formats import FORMATS, read_take, write_take
-from engine.take import Take, runs, timecode
+from engine.take import Take, timecode
 
-EASE_FRAMES = 5
 HINTS = "Drag any curve up or down: the face follows.   Hatched: frames the tracker lost.   Space plays."
 
 
@@ -51,29 +73,57 @@ class MainWindow(QMainWindow):
     ----------
     take, path : what to open, and the file it came from
     settings : what is remembered
+    unsaved : the folder for unsaved work; the user's own without one
     """
 
-    def __init__(self, take: Take, path: Path | None = None, settings: Settings | None = None) -> None:
+    def __init__(
+        self,
+        take: Take,
+        path: Path | None = None,
+        settings: Settings | None = None,
+        *,
+        unsaved: Path | None = None,
+    ) -> None:
         super().__init__()
         self.settings = settings or Settings()
         self.colours = theme.LIGHT if self.settings.light else theme.DARK
         self.session = Session(take)
+        self.keeper = Keeper(self.session, unsaved)
         self.inference = Inference(self.session)
         self.transport = Transport(self.session)
+        self.media = Media(self.session, self.transport)
+        self.files = FileActions(self.session, self.keeper, self.media, self.settings, self)
         self.notices = Notices()
         self.preview = PreviewPanel(self.session, self.inference)
+        self.reference = ReferencePanel(self.session)
         self.curves = CurvesPanel(self.session, self.inference, self.colours)
         self.timeline = Timeline(self.session, self.colours, gutter_px=GUTTER_PX)
-        self.inspector = Inspector(self.session)
+        self.filling = Filling(self.session)
+        self.edits = EditActions(self.session, self.inference, self.curves, self.filling)
+        self.time = TimeActions(self.session, self.transport, self.filling)
+        self.brush, self.value = BrushSection(self.session), ValueSection(self.session)
+        self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
+        self.smoothing = SmoothSection(self.session)
+        self.spans = SpansSection(self.session, self.filling)
+        sections = (
+            self.brush,
+            self.value,
+            self.pins,
+            self.clean,
+            self.smoothing,
+            self.spans,
+            FactsSection(self.session),
+        )
+        self.inspector = Inspector(self.session, sections)
         self._latencies_ms: list[float] = []
-        self._saved_view = ""
         self.setAcceptDrops(True)
         self._make_actions()
         self._lay_out()
         self._connect()
         self.setStyleSheet(theme.style_sheet(self.colours))
         self.resize(1440, 900)
-        self.show_take(take, path)
+        self.session.open(take, path)
+        self._show_opened()
 
     # --- building
 
@@ -81,19 +131,42 @@ class MainWindow(QMainWindow):
         self.actions_by_name: dict[str, QAction] = {}
         for entry in ACTIONS:
             action = QAction(entry.title, self, checkable=entry.checkable)
-            action.setShortcuts([QKeySequence(key) for key in entry.keys])
-            action.triggered.connect(lambda _=False, name=entry.name: getattr(self, name)())
+            action.triggered.connect(partial(self._do, entry.name))
             self.actions_by_name[entry.name] = action
+        self._menus: dict[str, QMenu] = {}
         for title in MENUS:
-            menu = self.menuBar().addMenu(title)
+            menu = self._menus[title] = self.menuBar().addMenu(title)
             for entry in ACTIONS:
                 if entry.menu == title:
                     menu.addAction(self.actions_by_name[entry.name])
             if title == "File":
                 self._recent = menu.addMenu("Open recent")
                 self._recent.aboutToShow.connect(self._fill_recent)
-        self.actions_by_name["drag_tool"].setChecked(True)
+        self._show_tool()
         self.actions_by_name["light_theme"].setChecked(self.settings.light)
+        self._make_presets()
+
+    def _make_presets(self) -> None:
+        menu = self._menus["View"].addMenu("Shortcuts")
+        self._presets = QActionGroup(self)
+        for name in PRESETS:
+            action = self._presets.addAction(menu.addAction(name))
+            action.setCheckable(True)
+            action.setChecked(name == self.settings.preset)
+            action.triggered.connect(partial(self.use_preset, name))
+        self.use_preset(self.settings.preset)
+
+    def use_preset(self, name: str, *_: bool) -> None:
+        """Use the shortcuts of a named program."""
+        self.settings.preset = name
+        for entry in ACTIONS:
+            shortcuts = [QKeySequence(key) for key in keys_of(entry, name)]
+            self.actions_by_name[entry.name].setShortcuts(shortcuts)
+
+    def _do(self, name: str, *_: bool) -> None:
+        owners = (self, self.files, self.edits, self.time)
+        owner = next(each for each in owners if name in type(each).__dict__)
+        getattr(owner, name)()
 
     def _toolbar(self) -> QFrame:
         bar = QFrame()
@@ -120,23 +193,31 @@ class MainWindow(QMainWindow):
                 button.setAccessibleName(entry.title)
                 row.addWidget(button)
                 self.buttons[name] = button
-        row.addStretch(1)
         self.hints = QLabel(HINTS)
         self.hints.setProperty("quiet", True)
-        row.addWidget(self.hints)
-        row.addStretch(1)
+        self.hints.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        # it may be cut off where the window is narrow, but must not keep it from being so
+        self.hints.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        row.addWidget(self.hints, 1)
         return bar
 
     def _lay_out(self) -> None:
+        self.preview.add_beneath(self.reference)
         lanes = QFrame()
         lanes.setProperty("panel", True)
         stack = QVBoxLayout(lanes)
         stack.setContentsMargins(1, 6, 1, 4)
         stack.setSpacing(2)
         stack.addWidget(self.timeline)
-        stack.addWidget(self.curves, 1)
+        area = QScrollArea()
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
+        area.setWidget(self.curves)
+        stack.addWidget(area, 1)
         scroll = QHBoxLayout()
-        scroll.setContentsMargins(GUTTER_PX, 0, GRID, 0)
+        scroll.setContentsMargins(GUTTER_PX, 0, GRID + SCROLL_PX, 0)
         scroll.addWidget(TimeScroll(self.session))
         stack.addLayout(scroll)
         split = QSplitter(Qt.Orientation.Horizontal)
@@ -168,12 +249,12 @@ class MainWindow(QMainWindow):
         row = QHBoxLayout(bar)
         row.setContentsMargins(GRID + 2, 3, GRID + 2, 3)
         row.setSpacing(3 * GRID)
-        self.status = {name: QLabel() for name in ("take", "rate", "length", "place", "engine", "saved", "speed")}
+        self.status = {
+            name: QLabel() for name in ("take", "rate", "length", "place", "notice", "engine", "saved", "speed")
+        }
         for name, label in self.status.items():
             label.setProperty("quiet", name != "take")
-            if name == "engine":
-                row.addStretch(1)
-            row.addWidget(label)
+            row.addWidget(label, 1 if name == "notice" else 0)
         self.status["engine"].setText("loading networks…")
         return bar
 
@@ -181,13 +262,30 @@ class MainWindow(QMainWindow):
         self.session.changed.connect(self._on_change)
         self.inference.failed.connect(self.notices.tell)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        self.preview.failed.connect(self.notices.tell)
+        for part in (self.preview, self.media, self.reference):
+            part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self._timed)
         self.transport.changed.connect(self._show_transport)
-        self.inspector.close_here.connect(self.close_here)
-        self.inspector.value_typed.connect(self.set_value)
+        self.value.close_here.connect(self.edits.close_here)
+        self.value.typed.connect(self.edits.set_value)
+        self.smoothing.moved.connect(self.edits.preview_smoothing)
+        self.smoothing.kept.connect(self.edits.smooth)
+        self.smoothing.dropped.connect(self.inference.cancel)
+        self.edits.cutoff_hz = self.smoothing.cutoff.value
+        self.edits.told.connect(self.status["notice"].setText)
+        self.time.looping = self.actions_by_name["loop"].isChecked
+        self.filling.failed.connect(self.notices.tell)
+        self.keeper.failed.connect(self.notices.tell)
+        self.files.told.connect(self.notices.tell)
+        self.files.opened.connect(self._show_opened)
+        self.filling.changed.connect(self._show_filling)
+        self.spans.refused.connect(self.notices.tell)
+        self.timeline.marked.connect(self.spans.mark)
+        self.spans.strip.wanted.connect(self.preview.draw_strip)
+        self.preview.strip_drawn.connect(self.spans.strip.show_picture)
         self.session.undo.indexChanged.connect(self._show_undo)
         self._show_undo()
+        self._show_filling()
         application = QApplication.instance()
         if application is not None:
             application.installEventFilter(self)
@@ -197,81 +295,24 @@ class MainWindow(QMainWindow):
         super().showEvent(event)
         QTimer.singleShot(0, self.inference.warm_up)
 
-    # --- opening and saving
+    # --- opening and closing
 
-    def show_take(self, take: Take, path: Path | None) -> None:
-        """Open a take in place of the one that is open."""
+    def load(self, path: Path) -> bool:
+        """Open a take or a project; returns whether it is open now."""
+        return self.files.load(path)
+
+    def _show_opened(self) -> None:
         self.transport.run(0.0)
-        self.session.open(take, path)
         self.notices.hide()
-        for notice in take.notices:
-            self.notices.tell(notice)
+        self.status["notice"].setText(" ".join(self.session.take.notices))
         self._show_title()
-
-    def load(self, path: Path, *_: object) -> bool:
-        """Open a file; what is open stays as it was where the file cannot be read."""
-        try:
-            take = read_take(path)
-        except EngineError as error:
-            self.notices.tell(error.sentence, error.advice)
-            return False
-        if not self._may_lose_edits():
-            return False
-        self.settings.remember(path)
-        self.show_take(take, path)
-        return True
-
-    def _may_lose_edits(self) -> bool:
-        if not self.session.edited:
-            return True
-        kinds = QMessageBox.StandardButton
-        answer = QMessageBox.question(
-            self,
-            "Unsaved edits",
-            f"{self.session.name} has edits that are not saved.",
-            kinds.Save | kinds.Discard | kinds.Cancel,
-        )
-        return answer == kinds.Discard or (answer == kinds.Save and self.save())
-
-    def open_take(self) -> None:
-        """Choose a file to open."""
-        endings = " ".join(f"*{ending}" for entry in FORMATS for ending in entry.endings)
-        name, _ = QFileDialog.getOpenFileName(self, "Open a take", "", f"Takes ({endings})")
-        if name:
-            self.load(Path(name))
-
-    def save(self) -> bool:
-        """Write to the file it was saved to before; the recording itself is never overwritten unasked."""
-        if self._saved_view and self.session.path is not None:
-            return self._write(self.session.path)
-        return self.save_as()
-
-    def save_as(self) -> bool:
-        """Choose a file and write the take."""
-        current = self.session.path or Path(f"{self.session.take.name}.csv")
-        suggestion = str(current.with_name(f"{current.stem}_edited.csv"))
-        name, _ = QFileDialog.getSaveFileName(self, "Save the take", suggestion, "Live Link Face CSV (*.csv)")
-        return bool(name) and self._write(Path(name))
-
-    def _write(self, path: Path) -> bool:
-        path = path if path.suffix else path.with_suffix(".csv")
-        try:
-            write_take(self.session.take, path)
-        except EngineError as error:
-            self.notices.tell(error.sentence, error.advice)
-            return False
-        self.session.path, self._saved_view = path, str(path)
-        self.session.undo.setClean()
-        self.settings.remember(path)
-        self._show_title()
-        return True
 
     def _fill_recent(self) -> None:
         self._recent.clear()
         for name in self.settings.recent:
             entry = self._recent.addAction(Path(name).name)
             entry.setToolTip(name)
-            entry.triggered.connect(partial(self.load, Path(name)))
+            entry.triggered.connect(partial(self.files.load, Path(name)))
         self._recent.setEnabled(bool(self.settings.recent))
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
@@ -283,11 +324,11 @@ class MainWindow(QMainWindow):
         """Open the first file that was dropped."""
         paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
         if paths:
-            self.load(paths[0])
+            self.files.take_in(paths[0])
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask for unsaved edits, then end the threads."""
-        if not self._may_lose_edits():
+        if not self.files.may_lose_edits():
             event.ignore()
             return
         self.shut_down()
@@ -300,145 +341,31 @@ class MainWindow(QMainWindow):
             application.removeEventFilter(self)
         self.transport.run(0.0)
         self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
+        self.keeper.close()
         self.inference.close()
+        self.media.close()
+        self.reference.close_reader()
+        self.filling.close()
         self.preview.close_renderer()
 
-    # --- editing
+    # --- the window
 
-    def undo(self) -> None:
-        """Take back the last step."""
-        if not self.inference.busy:
-            self.session.undo.undo()
+    def fill(self) -> None:
+        """Fill the chosen span, or the selection."""
+        self.spans.fill()
 
-    def redo(self) -> None:
-        """Do the step that was taken back again."""
-        if not self.inference.busy:
-            self.session.undo.redo()
+    def _show_filling(self) -> None:
+        # Enter belongs to whatever is typed into, unless there is a variant to keep
+        self.actions_by_name["accept"].setEnabled(bool(self.filling.variants))
+        self.actions_by_name["fill"].setEnabled(not self.filling.busy)
 
-    def cancel(self) -> None:
-        """Drop the drag under way."""
-        self.curves.tool.cancel()
+    def mute(self) -> None:
+        """Play with or without sound."""
+        self.media.mute(self.actions_by_name["mute"].isChecked())
 
-    def close_here(self) -> None:
-        """Bring lips or eyelids together on the selection, or around the playhead."""
-        control = CONTROLS[self.session.lane]
-        if control.name == "lips_vertical" or control.area == "eyelids":
-            self._set_control(0.0, f"close {control.title}")
-
-    def set_value(self, value_mm: float) -> None:
-        """Set the active control at the playhead, or over the selection, to a value."""
-        self._set_control(value_mm, f"set {CONTROLS[self.session.lane].title} to {value_mm:g} mm")
-
-    def _set_control(self, value_mm: float, title: str) -> None:
-        from engine.editing import ask
-
-        session = self.session
-        if self.inference.busy:
-            return
-        frames = session.selection or (session.playhead, session.playhead + 1)
-        ease_frames = EASE_FRAMES if session.selection else session.radius_frames
-        name = CONTROLS[session.lane].name
-        start, asked = ask(session.controls, name, frames, "set", value_mm, ease_frames=ease_frames)
-        self.inference.ask(start, asked)
-        self.inference.finish(title)
-
-    def wider_brush(self) -> None:
-        """Let the brush move more frames."""
-        self.session.set_brush(radius_frames=round(self.session.radius_frames * 1.25) + 1)
-
-    def narrower_brush(self) -> None:
-        """Let the brush move fewer frames."""
-        self.session.set_brush(radius_frames=round(self.session.radius_frames / 1.25) - 1)
-
-    def drag_tool(self) -> None:
-        """Work with the Drag tool."""
-        self.actions_by_name["drag_tool"].setChecked(True)
-
-    # --- time
-
-    def play(self) -> None:
-        """Play or pause."""
-        self.transport.toggle()
-
-    def play_forwards(self) -> None:
-        """Play forwards, faster each time."""
-        self.transport.faster(1)
-
-    def play_backwards(self) -> None:
-        """Play backwards, faster each time."""
-        self.transport.faster(-1)
-
-    def stop(self) -> None:
-        """Stand still."""
-        self.transport.run(0.0)
-
-    def loop(self) -> None:
-        """Begin again at the end, or stop there."""
-        self.transport.set_loop(self.actions_by_name["loop"].isChecked())
-
-    def next_frame(self) -> None:
-        """Go one frame on."""
-        self.session.move_playhead(self.session.playhead + 1)
-
-    def previous_frame(self) -> None:
-        """Go one frame back."""
-        self.session.move_playhead(self.session.playhead - 1)
-
-    def first_frame(self) -> None:
-        """Go to the beginning."""
-        self.session.move_playhead(0)
-
-    def last_frame(self) -> None:
-        """Go to the end."""
-        self.session.move_playhead(len(self.session.take) - 1)
-
-    def next_span(self) -> None:
-        """Go to the next span."""
-        later = [a for a, _ in runs(self.session.take.lost) if a > self.session.playhead]
-        if later:
-            self.session.move_playhead(later[0])
-
-    def previous_span(self) -> None:
-        """Go to the span before."""
-        earlier = [a for a, _ in runs(self.session.take.lost) if a < self.session.playhead]
-        if earlier:
-            self.session.move_playhead(earlier[-1])
-
-    def set_in(self) -> None:
-        """Let the selection begin at the playhead."""
-        _, stop = self.session.selection or (0, len(self.session.take))
-        self.session.select((self.session.playhead, max(stop, self.session.playhead + 1)))
-
-    def set_out(self) -> None:
-        """Let the selection end at the playhead."""
-        start, _ = self.session.selection or (0, 0)
-        self.session.select((min(start, self.session.playhead), self.session.playhead + 1))
-
-    def clear_selection(self) -> None:
-        """Select nothing."""
-        self.session.select(None)
-
-    # --- the view
-
-    def frame_all(self) -> None:
-        """Show the whole take."""
-        self.session.set_view(0.0, len(self.session.take) - 1.0)
-
-    def zoom_in(self) -> None:
-        """Show fewer frames around the playhead."""
-        self.session.zoom_view(1.5, self.session.playhead)
-
-    def zoom_out(self) -> None:
-        """Show more frames around the playhead."""
-        self.session.zoom_view(1 / 1.5, self.session.playhead)
-
-    def next_lane(self) -> None:
-        """Work on the next curve."""
-        self.session.choose_lane(self.session.lane + 1)
-
-    def previous_lane(self) -> None:
-        """Work on the curve before."""
-        self.session.choose_lane(self.session.lane - 1)
+    def _show_tool(self) -> None:
+        for name in TOOLS:
+            self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
 
     def light_theme(self) -> None:
         """Switch between dark and light."""
@@ -451,9 +378,9 @@ class MainWindow(QMainWindow):
     def show_keys(self) -> None:
         """List every key."""
         rows = "".join(
-            f"<tr><td style='padding:2px 16px 2px 0'>{entry.title}</td><td>{', '.join(entry.keys)}</td></tr>"
+            f"<tr><td style='padding:2px 16px 2px 0'>{entry.title}</td><td>{', '.join(keys)}</td></tr>"
             for entry in ACTIONS
-            if entry.keys
+            if (keys := keys_of(entry, self.settings.preset))
         )
         extra = "<tr><td>See the original</td><td>hold B</td></tr>"
         self._tell("Keys", f"<table>{rows}{extra}</table>")
@@ -497,6 +424,8 @@ class MainWindow(QMainWindow):
             self._show_saved()
         if change & Change.CURVES:
             self.hints.hide()
+        if change & Change.TOOL:
+            self._show_tool()
 
     def _show_title(self) -> None:
         take = self.session.take
@@ -515,7 +444,8 @@ class MainWindow(QMainWindow):
 
     def _show_saved(self) -> None:
         self.setWindowModified(self.session.edited)
-        self.status["saved"].setText("edited" if self.session.edited else "saved" if self._saved_view else "")
+        saved = "saved" if self.keeper.path else ""
+        self.status["saved"].setText("edits not saved yet" if self.session.edited else saved)
 
     def _show_undo(self, *_: int) -> None:
         stack = self.session.undo

@@ -29,6 +29,10 @@ class Notices(QFrame):
         row.addWidget(self.dismiss)
         self.hide()
 
+    def add(self, sentence: str) -> None:
+        """Put another sentence after what is shown."""
+        self.tell(self.text.text(), sentence)
+
     def tell(self, sentence: str, advice: str = "") -> None:
         """Show a sentence and an advice until it is put away or replaced."""
         log.warning("%s %s", sentence, advice)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import Flag, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QObject, Signal
-from PySide6.QtGui import QUndoStack
+from PySide6.QtGui import QUndoCommand, QUndoStack
 
+from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from engine.controls import CONTROLS, bundled_measurer
-from engine.take import Array, Take
+from engine.formats.audio import Audio
+from engine.project import Contents, Marks, Replayed, Span
+from engine.take import Array, Take, runs
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -30,8 +34,11 @@ class Change(Flag):
     VIEW = auto()  # which frames are on screen
     SELECTION = auto()  # the range that tools and playback work on
     LANE = auto()  # the lane that is worked on
+    LANES = auto()  # which lanes there are
     TOOL = auto()
     SAVED = auto()
+    MEDIA = auto()  # sound or reference video
+    MARKS = auto()  # spans, pins, notes, media or the verdict
 
 
 class Session(QObject):
@@ -48,8 +55,13 @@ class Session(QObject):
     playhead : frame
     view : first and last frame on screen, fractional
     selection : half-open range of frames, or None
-    lane : column of the control that is worked on
+    lane : the curve that is worked on, an index into CURVES
+    expanded : controls whose weights are shown below them
+    tool : name of the tool that the mouse works with in the lanes
     radius_frames, strength, exact : the Drag tool's brush
+    audio, audio_offset_s : the recording of the sound, and the time in the take at which it begins
+    video, video_offset_s : the file of the reference video, likewise
+    marks : spans, pins, notes, media and verdict
     """
 
     changed = Signal(object)
@@ -58,7 +70,8 @@ class Session(QObject):
         super().__init__()
         self.undo = QUndoStack(self)
         self.path: Path | None = None
-        self.strength, self.exact = 1.0, False
+        self.strength, self.exact, self.tool = 1.0, False, "drag"
+        self._restoring = False
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
 
@@ -70,14 +83,51 @@ class Session(QObject):
         measured.flags.writeable = False
         self.controls = self.original_controls = measured
         self.asked = np.full_like(measured, np.nan)
+        self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
         self.draft: Patch | None = None
         self.selection: tuple[int, int] | None = None
         self.lane = 0
+        self.expanded: frozenset[int] = frozenset()
         self.radius_frames = max(2, round(BRUSH_S * take.fps))
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
+        self.audio: Audio | None = None
+        self.video: Path | None = None
+        self.audio_offset_s = self.video_offset_s = 0.0
         self.undo.clear()
         self.changed.emit(Change.TAKE)
+
+    def restore(self, contents: Contents, path: Path | None, steps: Iterable[QUndoCommand], state: Replayed) -> None:
+        """Replace everything by what a project holds: its edits as `steps`, which come to `state`."""
+        self.blockSignals(True)
+        self._restoring = True
+        try:
+            self.open(contents.original, path)
+            for step in steps:
+                self.undo.push(step)
+            self.undo.setIndex(contents.position)
+            self.undo.setClean()
+        finally:
+            self._restoring = False
+            self.blockSignals(False)
+        self.take, self.asked, self.marks = state.take, state.asked, contents.marks
+        measured = bundled_measurer().measure(self.take.weights)
+        measured.flags.writeable = False
+        self.controls = measured
+        self.changed.emit(Change.TAKE)
+
+    def contents(self) -> Contents:
+        """Return all that a project file keeps; a step without an `edit` (one that changed no rows) is no part of it."""
+        edits = [getattr(self.undo.command(index), "edit", None) for index in range(self.undo.count())]
+        undone = sum(edit is not None for edit in edits[self.undo.index() :])
+        kept = tuple(edit for edit in edits if edit is not None)
+        return Contents(self.original, kept, len(kept) - undone, self.marks)
+
+    def set_marks(self, marks: Marks) -> None:
+        """Put other spans, pins, notes, media or another verdict in place."""
+        if marks != self.marks:
+            self.marks = marks
+            self.changed.emit(Change.MARKS)
 
     def _on_clean_changed(self, _: bool) -> None:
         self.changed.emit(Change.SAVED)
@@ -99,15 +149,50 @@ class Session(QObject):
             return np.asarray(draft.weights[frame - draft.start])
         return np.asarray(self.take.weights[frame])
 
-    def shown_controls(self, frame: int) -> Array:
-        """Return the controls to show at a frame, (8,) mm."""
+    @property
+    def lanes(self) -> list[int]:
+        """The curves on screen from top to bottom, as indices into CURVES."""
+        shown: list[int] = []
+        for control in range(len(CONTROLS)):
+            shown.append(control)
+            if control in self.expanded:
+                shown += [lane for lane in weights_under(control) if lane not in shown]
+        return shown
+
+    def curve(self, lane: int) -> Array:
+        """Return a curve as edited so far, (frames,)."""
+        source = self.take.weights if CURVES[lane].is_weight else self.controls
+        return np.asarray(source[:, CURVES[lane].column])
+
+    def original_curve(self, lane: int) -> Array:
+        """Return a curve as opened, (frames,)."""
+        source = self.original.weights if CURVES[lane].is_weight else self.original_controls
+        return np.asarray(source[:, CURVES[lane].column])
+
+    def asked_curve(self, lane: int) -> Array | None:
+        """Return what the edits asked of a curve, (frames,) with NaN where nothing was asked; None for a weight."""
+        return None if CURVES[lane].is_weight else np.asarray(self.asked[:, CURVES[lane].column])
+
+    def draft_curve(self, lane: int) -> Array | None:
+        """Return what a curve would become in the frames of the draft, (n,)."""
+        if self.draft is None:
+            return None
+        source = self.draft.weights if CURVES[lane].is_weight else self.draft.reached
+        return np.asarray(source[:, CURVES[lane].column])
+
+    def value(self, lane: int, frame: int) -> float:
+        """Return the value to show at a frame: the draft's where it has one."""
         draft = self.draft
         if draft is not None and draft.start <= frame < draft.stop:
-            return np.asarray(draft.reached[frame - draft.start])
-        return np.asarray(self.controls[frame])
+            drafted = self.draft_curve(lane)
+            assert drafted is not None
+            return float(drafted[frame - draft.start])
+        return float(self.curve(lane)[frame])
 
     def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array) -> None:
         """Put rows of weights, controls and asked values in place; for commands only."""
+        if self._restoring:
+            return  # what the steps come to is known
         stop = start + len(weights)
         self.take = self.take.with_rows(start, weights)
         self.controls = _with_rows(self.controls, start, controls)
@@ -156,11 +241,37 @@ class Session(QObject):
             self.selection = frames
             self.changed.emit(Change.SELECTION)
 
+    def attach_audio(self, audio: Audio | None, offset_s: float = 0.0) -> None:
+        """Play a recording along with the take, or none."""
+        self.audio, self.audio_offset_s = audio, offset_s
+        self.changed.emit(Change.MEDIA)
+
+    def attach_video(self, path: Path | None, offset_s: float = 0.0) -> None:
+        """Show a reference video beside the face, or none."""
+        self.video, self.video_offset_s = path, offset_s
+        self.changed.emit(Change.MEDIA)
+
     def choose_lane(self, lane: int) -> None:
-        """Work on another control."""
-        if lane != self.lane and 0 <= lane < len(CONTROLS):
+        """Work on another curve."""
+        if lane != self.lane and 0 <= lane < len(CURVES):
             self.lane = lane
             self.changed.emit(Change.LANE)
+
+    def expand(self, lane: int) -> None:
+        """Show the weights under a control, or put them away, named by the control or one of them."""
+        above = [control for control in sorted(self.expanded) if lane in weights_under(control)]
+        control = above[0] if lane >= FIRST_WEIGHT and above else lane
+        if 0 <= control < FIRST_WEIGHT:
+            self.expanded ^= {control}
+            if self.lane not in self.lanes:
+                self.lane = control
+            self.changed.emit(Change.LANES | Change.LANE)
+
+    def choose_tool(self, name: str) -> None:
+        """Let the mouse work with another tool."""
+        if name != self.tool:
+            self.tool = name
+            self.changed.emit(Change.TOOL)
 
     def set_brush(
         self, *, radius_frames: int | None = None, strength: float | None = None, exact: bool | None = None

@@ -52,6 +52,15 @@ class Settings:
         self._stored.setValue("light", on)
 
     @property
+    def preset(self) -> str:
+        """Which program's shortcuts are used."""
+        return str(self._stored.value("preset", "Retake"))
+
+    @preset.setter
+    def preset(self, name: str) -> None:
+        self._stored.setValue("preset", name)
+
+    @property
     def recent(self) -> list[str]:
         """Paths of the takes opened last, newest first."""
         stored = self._stored.value("recent", [])

@@ -92,6 +92,7 @@ QCheckBox {{ border: 1px solid transparent; border-radius: 4px; padding: 2px; sp
 QDoubleSpinBox, QSpinBox, QLineEdit, QComboBox, QPlainTextEdit, QListWidget, QTreeWidget, QTableWidget {{
   background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; padding: 3px 6px;
   selection-background-color: {c.accent}; selection-color: {c.on_accent}; }}
+QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
 QComboBox QAbstractItemView {{ background: {c.panel}; border: 1px solid {c.edge}; }}
 QHeaderView::section {{ background: {c.panel}; color: {c.quiet}; border: none; padding: 3px 6px; }}
 QMenuBar {{ background: {c.ground}; }}
@@ -107,7 +108,8 @@ QScrollBar:horizontal {{ height: 10px; background: transparent; margin: 0; }}
 QScrollBar::handle:horizontal {{ background: {c.edge}; border-radius: 4px; min-width: 24px; margin: 1px; }}
 QScrollBar:vertical {{ width: 10px; background: transparent; margin: 0; }}
 QScrollBar::handle:vertical {{ background: {c.edge}; border-radius: 4px; min-height: 24px; margin: 1px; }}
-QScrollBar::handle:hover {{ background: {c.faint}; }}
+QScrollBar::handle:disabled {{ background: transparent; }}
+QScrollBar::handle:hover:!disabled {{ background: {c.faint}; }}
 QScrollBar::add-line, QScrollBar::sub-line, QScrollBar::add-page, QScrollBar::sub-page {{
   background: transparent; border: none; width: 0; height: 0; }}
 QScrollArea, QScrollArea > QWidget > QWidget {{ background: transparent; border: none; }}

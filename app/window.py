@@ -20,6 +20,7 @@ def start(path: Path | None) -> int:
     if sys.platform == "linux" and not any(os.environ.get(name) for name in DISPLAYS):
         print("There is no display to open the window on. The commands work without: retake --help.", file=sys.stderr)
         return 2
+    from PySide6.QtCore import QTimer
     from PySide6.QtWidgets import QApplication
 
     from app.main_window import MainWindow
@@ -29,16 +30,12 @@ def start(path: Path | None) -> int:
     application = QApplication(sys.argv[:1])
     application.setApplicationName("Retake")
     application.setStyle("Fusion")  # the style sheet is drawn over it, alike on every desktop
-    problem = None
-    try:
-        take = read_take(path or demo.BUNDLED)
-    except EngineError as error:
-        problem, path, take = error, None, read_take(demo.BUNDLED)
-    window = MainWindow(take, path)
+    window = MainWindow(read_take(demo.BUNDLED), demo.BUNDLED)
     _report_to(window)
-    if problem is not None:
-        window.notices.tell(problem.sentence, f"{problem.advice} The demo take is open instead.".strip())
+    if path is not None and not window.load(path):
+        window.notices.add("The demo take is open instead.")
     window.show()
+    QTimer.singleShot(0, window.files.offer_left_over)
     return application.exec()
 
 

@@ -49,6 +49,15 @@ class Patch:
         """The frame after the last."""
         return self.start + len(self.weights)
 
+    @classmethod
+    def between(cls, before: Take, after: Take, frames: tuple[int, int]) -> Patch:
+        """Return the patch that turns one take into another over a half-open range; nothing was asked of controls."""
+        rows = np.asarray(after.weights[frames[0] : frames[1]])
+        if before.weights.shape != after.weights.shape:
+            raise EditError(f"The new weights have {len(after)} frames, the take {len(before)}.")
+        reached = bundled_measurer().measure(rows)
+        return cls(frames[0], rows, reached, reached)
+
     def apply(self, take: Take) -> Take:
         """Return the take with these weights in place."""
         return take.with_rows(self.start, self.weights)

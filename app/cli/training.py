@@ -10,7 +10,13 @@ from rich.console import Console
 
 from engine.errors import EngineError
 
-NETWORKS = ("regress", "inpaint")
+NETWORKS = ("regress", "regress_baselines", "regress_study", "clean", "inpaint", "motion", "controls")
+ELSEWHERE = {  # the others are engine.NAME.train
+    "regress_baselines": "engine.evaluate.baselines.train",
+    "regress_study": "engine.evaluate.study",
+    "motion": "engine.evaluate.latent",
+    "controls": "engine.evaluate.regressors",
+}
 ASSETS = ("demo", "head")
 
 
@@ -28,7 +34,7 @@ def train(
     if name not in NETWORKS:
         raise EngineError(f"There is no network called {name!r}.", f"Networks are: {', '.join(NETWORKS)}.")
     console = Console()
-    trainer = importlib.import_module(f"engine.{name}.train")
+    trainer = importlib.import_module(ELSEWHERE.get(name, f"engine.{name}.train"))
     trainer.train(data or data_folder(), out or MODELS, report=lambda line: console.print(line, highlight=False))
 
 

@@ -13,12 +13,21 @@ def falloff(frames: Array, centre: float, radius_frames: float) -> Array:
     return np.asarray(1 - away * away * (3 - 2 * away))
 
 
-def pulled(curve: Array, start: int, centre: int, *, by_mm: float, radius_frames: int, strength: float) -> Array:
-    """Return rows of a curve, (n,) in mm from frame `start`, pulled at `centre`; a distance is never below zero."""
+def pulled(curve: Array, start: int, centre: int, *, by: float, radius_frames: int, strength: float) -> Array:
+    """Return rows of a curve, (n,) from frame `start`, pulled at `centre`; neither a distance nor a weight is below zero."""
     frames = np.arange(start, start + len(curve), dtype=np.float64)
-    return np.asarray(np.maximum(0.0, curve + strength * by_mm * falloff(frames, centre, radius_frames)))
+    return np.asarray(np.maximum(0.0, curve + strength * by * falloff(frames, centre, radius_frames)))
 
 
 def reach(centre: int, radius_frames: int, frames: int) -> tuple[int, int]:
     """Return the half-open range of frames that the brush moves, within a take of a number of frames."""
     return max(0, centre - radius_frames + 1), min(frames, centre + radius_frames)
+
+
+def eased_to(curve: Array, frames: tuple[int, int], value: float, *, ease_frames: int) -> tuple[int, Array]:
+    """Return first frame and rows, (n,), of a curve set to a value over a range and eased in and out beside it."""
+    first, last = max(0, frames[0] - ease_frames), min(len(curve), frames[1] + ease_frames)
+    frame = np.arange(first, last, dtype=np.float64)
+    away = np.maximum(0.0, np.maximum(frames[0] - frame, frame - frames[1] + 1))
+    follows = falloff(away, 0.0, ease_frames + 1)
+    return first, curve[first:last] + follows * (value - curve[first:last])

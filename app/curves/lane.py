@@ -7,20 +7,22 @@ import pyqtgraph as pg
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QPainter, QPen
 
+from app.curve_table import CURVES, FIRST_WEIGHT
 from app.curves.peaks import peaks
 from app.theme import GRID, Palette
-from engine.controls import Control
 from engine.take import Array
 
-GUTTER_PX = 128
+GUTTER_PX = 136
+INDENT_PX = 11
 
 
 class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
     """The name of a lane, its range and its value at the playhead."""
 
-    def __init__(self, control: Control) -> None:
+    def __init__(self, key: int) -> None:
         super().__init__()
-        self._control = control
+        self._key, self._curve = key, CURVES[key]
+        self.expanded = False
         self.colour, self.quiet, self.text_colour = QColor("white"), QColor("grey"), QColor("white")
         self.active, self.value, self.range = False, 0.0, (0.0, 1.0)
         self.setFixedWidth(GUTTER_PX)
@@ -30,33 +32,41 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         area = QRectF(self.rect()).adjusted(GRID, 2, -GRID, -2)
         middle = area.center().y()
         font = QFont(painter.font())
-        font.setPixelSize(12)
+        font.setPixelSize(11 if self._curve.is_weight else 12)
         font.setBold(self.active)
         painter.setFont(font)
         painter.setPen(self.colour)
-        name_box = QRectF(area.left(), middle - 17, area.width() - 34, 17)
-        painter.drawText(name_box, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, self._control.title)
+        name_box = QRectF(area.left(), middle - 17, area.width() - (0 if self._curve.is_weight else 30), 17)
+        left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        mark = "" if self._curve.is_weight else "▾ " if self.expanded else "▸ "
+        indent = INDENT_PX if self._curve.is_weight else 0
+        painter.drawText(name_box.adjusted(indent, 0, 0, 0), left, mark + self._curve.title)
         font.setBold(False)
         painter.setFont(font)
         painter.setPen(self.text_colour)
         value_box = QRectF(area.left(), middle, area.width() - 34, 17)
-        shown = f"{self.value:.1f} {self._control.unit}"
-        painter.drawText(value_box, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, shown)
+        painter.drawText(value_box.adjusted(INDENT_PX, 0, 0, 0), left, self._curve.shown(self.value))
         font.setPixelSize(10)
         painter.setFont(font)
         painter.setPen(self.quiet)
         low, high = self.range
         right = Qt.AlignmentFlag.AlignRight
-        painter.drawText(area, right | Qt.AlignmentFlag.AlignTop, f"{high:.0f}")
-        painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, f"{low:.0f}")
+        if area.height() > 26 and not self._curve.is_weight:
+            painter.drawText(area, right | Qt.AlignmentFlag.AlignTop, f"{high:.0f}")
+            painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, f"{low:.0f}")
 
 
 class Lane:
-    """The three curves of a control: as opened (faint), as asked (dashed), as the face does it (solid)."""
+    """A curve as opened (faint), as asked (dashed), as the face does it (solid).
 
-    def __init__(self, control: Control) -> None:
-        self.control = control
-        self.gutter = Gutter(control)
+    Parameters
+    ----------
+    key : which curve, an index into CURVES
+    """
+
+    def __init__(self, key: int) -> None:
+        self.key, self.curve = key, CURVES[key]
+        self.gutter = Gutter(key)
         self.view = pg.ViewBox(enableMouse=False, enableMenu=False, defaultPadding=0.0)
         self.view.setMinimumHeight(28)
         self.original, self.asked, self.reached = (pg.PlotCurveItem(connect="finite") for _ in range(3))
@@ -65,9 +75,10 @@ class Lane:
             self.view.addItem(item, ignoreBounds=True)
         self.range = (0.0, 1.0)
 
-    def paint_with(self, colours: Palette, index: int) -> None:
+    def paint_with(self, colours: Palette) -> None:
         """Take on a theme's colours."""
-        colour = QColor(colours.lanes[index % len(colours.lanes)])
+        weight = self.key >= FIRST_WEIGHT
+        colour = QColor(colours.quiet if weight else colours.lanes[self.key % len(colours.lanes)])
         self.original.setPen(pg.mkPen(colours.faint, width=1))
         self.asked.setPen(QPen(QColor(colours.text), 1, Qt.PenStyle.DashLine))
         self.asked.opts["pen"].setCosmetic(True)
@@ -78,7 +89,13 @@ class Lane:
         self.gutter.text_colour = QColor(colours.text)
 
     def fit(self, *curves: Array) -> None:
-        """Choose the range of values so that the curves, (frames,) each, fit with a margin."""
+        """Choose the range of values so that the curves, (frames,) each, fit with a margin; weights show 0..1."""
+        if self.curve.is_weight:
+            low = min(0.0, *(float(curve.min()) for curve in curves))
+            high = max(1.0, *(float(curve.max()) for curve in curves))
+            self.gutter.range = (low, high)
+            self.set_range(low - 0.06, high + 0.06)
+            return
         low = min(float(np.nanmin(curve)) for curve in curves)
         high = max(float(np.nanmax(curve)) for curve in curves)
         spare = max(0.08 * (high - low), (4.0 - (high - low)) / 2, 0.2)
@@ -98,9 +115,10 @@ class Lane:
         """Draw the curve as opened, visible frames only, (n,) from `start`."""
         self.original.setData(*peaks(visible, start, self._columns))
 
-    def draw_edit(self, asked: Array, reached: Array, start: int) -> None:
-        """Draw what was asked and what the face does, visible frames only, (n,) each from `start`."""
-        self.asked.setData(*peaks(asked, start, self._columns))
+    def draw_edit(self, asked: Array | None, reached: Array, start: int) -> None:
+        """Draw what was asked, if anything, and what the face does, visible frames only, (n,) each from `start`."""
+        if asked is not None:
+            self.asked.setData(*peaks(asked, start, self._columns))
         self.reached.setData(*peaks(reached, start, self._columns))
 
     @property

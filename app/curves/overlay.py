@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QLineF, QRectF, Qt
+from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 from PySide6.QtWidgets import QGraphicsItem, QStyleOptionGraphicsItem, QWidget
 
@@ -66,13 +66,14 @@ class Underlay(QGraphicsItem):
 
 
 class Playhead(QGraphicsItem):
-    """A line through every lane at the frame that is shown."""
+    """A line through every lane at the frame that is shown, and the box and handles of the tool at work."""
 
     def __init__(self, area: Callable[[], QRectF], x_of: Callable[[float], float]) -> None:
         super().__init__()
         self._area, self._x_of = area, x_of
         self.frame = 0
-        self.colour = QColor("white")
+        self.box, self.handles = QRectF(), list[QPointF]()
+        self.colours: Palette | None = None
         self.setZValue(10)
 
     def boundingRect(self) -> QRectF:
@@ -80,9 +81,17 @@ class Playhead(QGraphicsItem):
         return self._area()
 
     def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
-        """Draw the line where the frame is on screen."""
+        """Draw the line where the frame is on screen, then the box of a tool."""
+        if self.colours is None:
+            return
         area = self._area()
         x = self._x_of(self.frame)
         if area.left() <= x <= area.right():
-            painter.setPen(QPen(self.colour, 1))
+            painter.setPen(QPen(QColor(self.colours.text), 1))
             painter.drawLine(QLineF(x, area.top(), x, area.bottom()))
+        if not self.box.isNull():
+            painter.setPen(QPen(QColor(self.colours.accent), 1, Qt.PenStyle.DashLine))
+            painter.drawRect(self.box)
+            painter.setBrush(QColor(self.colours.accent))
+            for handle in self.handles:
+                painter.drawRect(QRectF(handle.x() - 4, handle.y() - 4, 8, 8))

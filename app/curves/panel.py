@@ -5,25 +5,27 @@ from __future__ import annotations
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QMouseEvent, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QMouseEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QLabel
 
-from app.curves.lane import Lane
+from app.curves.lane import GUTTER_PX, Lane
 from app.curves.overlay import Playhead, Underlay
 from app.curves.peaks import on_screen
-from app.curves.tools import DragTool, Tool
+from app.curves.tools import make_tools
+from app.curves.tools.base import Tool
 from app.inference import Inference
 from app.session import Change, Session
 from app.theme import GRID, Palette
-from engine.controls import CONTROLS
-from engine.take import Array, runs
+from engine.take import Array
 
 ACTIVE_STRETCH, STRETCH = 24, 10
 WHEEL_STEP = 1.2
+MIN_LANE_PX = 40
+EXPANDER = 0.75  # the part of the gutter whose click shows or hides the weights below
 
 
 class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
-    """One lane per control.
+    """One lane per curve: the controls, and the weights under those that are expanded.
 
     Parameters
     ----------
@@ -36,15 +38,13 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.session, self.inference = session, inference
         self.setAntialiasing(True)
         self.setMouseTracking(True)
-        self.setAccessibleName("Control curves")
+        self.setAccessibleName("Curves")
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         self.ci.layout.setContentsMargins(0, 0, GRID, 0)
         self.ci.layout.setVerticalSpacing(6)
         self.ci.layout.setHorizontalSpacing(0)
-        self.lanes = [Lane(control) for control in CONTROLS]
-        for row, lane in enumerate(self.lanes):
-            self.ci.addItem(lane.gutter, row, 0)
-            self.ci.addItem(lane.view, row, 1)
+        self._colours = colours
+        self.lanes: list[Lane] = []
         self._underlay = Underlay(self._lanes_box, self._x_of)
         self._playhead = Playhead(self._lanes_box, self._x_of)
         self.scene().addItem(self._underlay)
@@ -52,19 +52,28 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.readout = QLabel(self)
         self.readout.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.readout.hide()
-        self.tool: Tool = DragTool(self)
+        self.tools = make_tools(self)
         self._pan_from: tuple[QPointF, tuple[float, float]] | None = None
-        self.paint_with(colours)
         session.changed.connect(self._on_change)
         self._on_change(Change.TAKE)
+        self.paint_with(colours)
+
+    @property
+    def tool(self) -> Tool:
+        """The tool that the mouse goes to."""
+        return self.tools[self.session.tool]
+
+    def lane(self, key: int) -> Lane:
+        """Return the lane of a curve on screen, an index into CURVES."""
+        return self.lanes[self.session.lanes.index(key)]
 
     def paint_with(self, colours: Palette) -> None:
         """Take on a theme's colours."""
+        self._colours = colours
         self.setBackground(colours.panel)
-        for index, lane in enumerate(self.lanes):
-            lane.paint_with(colours, index)
-        self._underlay.colours = colours
-        self._playhead.colour = QColor(colours.text)
+        for lane in self.lanes:
+            lane.paint_with(colours)
+        self._underlay.colours = self._playhead.colours = colours
         self.readout.setStyleSheet(
             f"background: {colours.raised}; color: {colours.text}; border: 1px solid {colours.edge};"
             "border-radius: 4px; padding: 3px 6px;"
@@ -73,56 +82,88 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     # --- drawing
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.CURVES):
-            self._fit_values()
-        if change & (Change.TAKE | Change.LANE):
-            self._arrange()
-        if change & (Change.TAKE | Change.VIEW):
-            for lane in self.lanes:
-                lane.show_frames(*self.session.view)
-            self._draw(originals=True)
-        elif change & (Change.CURVES | Change.DRAFT):
-            self._draw()
-        if change & (Change.TAKE | Change.PLAYHEAD | Change.CURVES | Change.DRAFT):
-            self._show_playhead()
-        if change & (Change.TAKE | Change.SELECTION):
-            self._underlay.selection = self.session.selection
-            self._underlay.spans = [(float(a), float(b)) for a, b in runs(self.session.take.lost)]
-        if change & (Change.TOOL | Change.TAKE | Change.VIEW | Change.SELECTION | Change.LANE):
-            self._underlay.update()
-            self._playhead.update()
+        kinds = Change
+        for cause, step in (
+            (kinds.TAKE | kinds.LANES, self._lay_lanes),
+            (kinds.TAKE | kinds.LANES | kinds.CURVES, self._fit_values),
+            (kinds.TAKE | kinds.LANES | kinds.LANE, self._arrange),
+            (kinds.TAKE | kinds.LANES | kinds.VIEW, self._show_frames),
+            (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT, self._draw_edits),
+            (kinds.TAKE | kinds.LANES | kinds.PLAYHEAD | kinds.CURVES | kinds.DRAFT, self._show_playhead),
+            (kinds.DRAFT, self.tool.refresh),
+            (kinds.TAKE | kinds.TOOL, self._take_up_tool),
+            (kinds.TAKE | kinds.LANES | kinds.TOOL | kinds.VIEW | kinds.SELECTION | kinds.MARKS, self._show_marks),
+        ):
+            if change & cause:
+                step()
+
+    def _show_marks(self) -> None:
+        self._underlay.selection = self.session.selection
+        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.marks.spans]
+        self._underlay.update()
+        self._playhead.update()
+
+    def _take_up_tool(self) -> None:
+        for tool in self.tools.values():
+            if tool is not self.tool and tool.busy:
+                tool.cancel()
+        self.show_handles(QRectF(), [])
+        self.setCursor(self.tool.cursor)
+
+    def _lay_lanes(self) -> None:
+        wanted = self.session.lanes
+        if [lane.key for lane in self.lanes] == wanted:
+            return
+        self.ci.clear()
+        known = {lane.key: lane for lane in self.lanes}
+        self.lanes = [known.get(key) or Lane(key) for key in wanted]
+        for row, lane in enumerate(self.lanes):
+            lane.paint_with(self._colours)
+            self.ci.addItem(lane.gutter, row, 0)
+            self.ci.addItem(lane.view, row, 1)
+        self.setMinimumHeight(MIN_LANE_PX * len(self.lanes))
 
     def _fit_values(self) -> None:
         session = self.session
-        for index, lane in enumerate(self.lanes):
-            asked = session.asked[:, index]
-            curves = [session.original_controls[:, index], session.controls[:, index]]
-            lane.fit(*curves, *([asked] if np.isfinite(asked).any() else []))
+        for lane in self.lanes:
+            curves = [session.original_curve(lane.key), session.curve(lane.key)]
+            asked = session.asked_curve(lane.key)
+            lane.fit(*curves, *([asked] if asked is not None and np.isfinite(asked).any() else []))
 
     def _arrange(self) -> None:
         for row, lane in enumerate(self.lanes):
-            lane.gutter.active = row == self.session.lane
+            lane.gutter.active = lane.key == self.session.lane
+            lane.gutter.expanded = lane.key in self.session.expanded
             self.ci.layout.setRowStretchFactor(row, ACTIVE_STRETCH if lane.gutter.active else STRETCH)
             lane.gutter.update()
+        self.ci.layout.activate()
 
-    def _draw(self, *, originals: bool = False) -> None:
+    def _show_frames(self) -> None:
+        start, stop = on_screen(len(self.session.take), self.session.view)
+        for lane in self.lanes:
+            lane.show_frames(*self.session.view)
+            lane.draw_original(self.session.original_curve(lane.key)[start:stop], start)
+
+    def _draw_edits(self) -> None:
         session, draft = self.session, self.session.draft
         start, stop = on_screen(len(session.take), session.view)
-        asked, reached = session.asked[start:stop], session.controls[start:stop]
-        if draft is not None:
-            asked = _overlaid(asked, start, draft.asked, draft.start)
-            reached = _overlaid(reached, start, draft.reached, draft.start)
-        for index, lane in enumerate(self.lanes):
-            if originals:
-                lane.draw_original(session.original_controls[start:stop, index], start)
-            lane.draw_edit(asked[:, index], reached[:, index], start)
+        for lane in self.lanes:
+            reached = session.curve(lane.key)[start:stop]
+            asked = session.asked_curve(lane.key)
+            asked = None if asked is None else asked[start:stop]
+            drafted = session.draft_curve(lane.key)
+            if draft is not None and drafted is not None:
+                reached = _overlaid(reached, start, drafted, draft.start)
+                if asked is not None:
+                    asked = _overlaid(asked, start, draft.asked[:, lane.curve.column], draft.start)
+            lane.draw_edit(asked, reached, start)
 
     def _show_playhead(self) -> None:
         frame = self.session.playhead
         self._playhead.frame = frame
         self._playhead.update()
-        for lane, value in zip(self.lanes, self.session.shown_controls(frame), strict=True):
-            lane.gutter.value = float(value)
+        for lane in self.lanes:
+            lane.gutter.value = self.session.value(lane.key, frame)
             lane.gutter.update()
 
     def show_brush(self, lane: Lane | None, frames: tuple[float, float] | None) -> None:
@@ -135,6 +176,11 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         """Show the handle on a lane's curve, or none."""
         for other in self.lanes:
             other.dot.setData([frame], [value]) if other is lane else other.dot.clear()
+
+    def show_handles(self, box: QRectF, handles: list[QPointF]) -> None:
+        """Show a box with handles, in the scene; an empty box for none."""
+        self._playhead.box, self._playhead.handles = box, handles
+        self._playhead.update()
 
     def show_readout(self, text: str, at: QPointF) -> None:
         """Show a short text beside the pointer, kept inside the panel; nothing for an empty one."""
@@ -156,21 +202,17 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         return box.left() + (frame - first) / max(1e-9, last - first) * box.width()
 
     def lane_at(self, at: QPointF) -> int | None:
-        """Return the lane under a position in the widget, gutter included."""
+        """Return the curve whose lane is under a position in the widget, gutter included."""
         y = self.mapToScene(at.toPoint()).y()
-        for index, lane in enumerate(self.lanes):
+        for lane in self.lanes:
             box = lane.scene_box()
             if box.top() - 3 <= y < box.bottom() + 3:
-                return index
+                return lane.key
         return None
 
     def frame_at(self, at: QPointF) -> float:
         """Return the fractional frame under a position in the widget."""
         return self.lanes[0].frame_at(self.mapToScene(at.toPoint()).x())
-
-    def shown_curve(self, lane: int) -> Array:
-        """Return what the face does, (frames,) in mm, in a lane, edits under way left out."""
-        return self.session.controls[:, lane]
 
     # --- the mouse
 
@@ -180,10 +222,15 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             self._pan_from = (event.position(), self.session.view)
             return
         lane = self.lane_at(event.position())
-        if event.button() == Qt.MouseButton.LeftButton and lane is not None:
+        if event.button() != Qt.MouseButton.LeftButton or lane is None:
+            return
+        if event.position().x() < GUTTER_PX:
             self.session.choose_lane(lane)
-            self.ci.layout.activate()
-            self.tool.press(lane, event)
+            if event.position().x() < GUTTER_PX * EXPANDER:
+                self.session.expand(lane)
+            return
+        self.session.choose_lane(lane)
+        self.tool.press(lane, event)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Pan, or let the tool move."""
@@ -192,7 +239,12 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             shift = (origin.x() - event.position().x()) / max(1.0, self._lanes_box().width()) * (last - first)
             self.session.set_view(first + shift, last + shift)
             return
-        self.tool.move(self.lane_at(event.position()), event)
+        in_gutter = event.position().x() < GUTTER_PX and not self.tool.busy
+        self.setCursor(Qt.CursorShape.PointingHandCursor if in_gutter else self.tool.cursor)
+        if in_gutter:
+            self.tool.leave()
+        else:
+            self.tool.move(self.lane_at(event.position()), event)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End what the press began."""
@@ -222,12 +274,13 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Thin the curves for the new width."""
         super().resizeEvent(event)
-        if hasattr(self, "tool"):
-            self._draw(originals=True)
+        if self.isVisible():
+            self._show_frames()
+            self._draw_edits()
 
 
 def _overlaid(visible: Array, start: int, rows: Array, rows_start: int) -> Array:
-    """Return visible, (n, 8) from frame `start`, with rows from `rows_start` over it."""
+    """Return visible, (n,) from frame `start`, with rows from `rows_start` over it."""
     first, last = max(start, rows_start), min(start + len(visible), rows_start + len(rows))
     if first >= last:
         return visible

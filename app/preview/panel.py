@@ -27,10 +27,12 @@ from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
 from app.theme import GRID
 from engine.character import Character
+from engine.take import Array
 
 VIEWS = ("Before", "After", "Split", "Difference")
 BUDGET_MS = 45.0  # a frame that takes longer is drawn at half resolution while something moves
 STILL_MS = 180
+STRIP_PX = (70, 88)  # one face of a strip
 
 
 class Face(QWidget):
@@ -134,6 +136,7 @@ class PreviewPanel(QFrame):
     inference : tells when the draft on screen was asked for, to time drag to preview
     """
 
+    strip_drawn = Signal(object)  # faces side by side, (height, width, 3)
     timed = Signal(float)  # ms from the mouse event to its picture on screen
     failed = Signal(str, str)
 
@@ -184,11 +187,15 @@ class PreviewPanel(QFrame):
         foot.addWidget(hint)
         foot.addStretch(1)
         foot.addWidget(self._frame_label)
-        column = QVBoxLayout(self)
+        self._column = column = QVBoxLayout(self)
         column.setContentsMargins(GRID, GRID, GRID, GRID)
         column.addLayout(row)
         column.addWidget(self.face, 1)
         column.addLayout(foot)
+
+    def add_beneath(self, widget: QWidget) -> None:
+        """Put another panel beneath the face."""
+        self._column.addWidget(widget)
 
     def show_view(self, name: str) -> None:
         """Show before, after, split or difference."""
@@ -224,6 +231,12 @@ class PreviewPanel(QFrame):
         if self._coarse:
             self._still.start()
 
+    def draw_strip(self, faces: list[Array]) -> None:
+        """Draw faces, (52,) weights each, small and side by side; `strip_drawn` brings the picture."""
+        if not self._off and faces:
+            size = (STRIP_PX[0] * len(faces), STRIP_PX[1])
+            self.drawing.submit(Wanted(Shot(tuple(faces), Camera(), size), self._character, strip=True), "strip")
+
     def _shot(self) -> Shot:
         session, view = self._session, self.face.view
         after = session.frame_weights(session.playhead)
@@ -241,6 +254,9 @@ class PreviewPanel(QFrame):
         self.refresh(moving=False)
 
     def _arrived(self, wanted: Wanted, picture: Picture) -> None:
+        if wanted.strip:
+            self.strip_drawn.emit(picture)
+            return
         spent = (time.perf_counter() - self._asked_at) * 1e3
         if not self._coarse:
             self._spent_ms = spent

@@ -12,11 +12,12 @@ from engine.character import Character
 
 @dataclass(frozen=True, eq=False)
 class Wanted:
-    """A shot, the character in it, and when the user did what it shows (0 when nobody waits for it)."""
+    """A shot, the character in it, when the user did what it shows (0: nobody waits), and whether it is a strip of variants."""
 
     shot: Shot
     character: Character | None = None
     since: float = 0.0
+    strip: bool = False
 
 
 class RenderJob:

@@ -1,16 +1,18 @@
-"""The ruler and the spans lane above the curves, and the scroll bar beneath them."""
+"""The ruler, the waveform and the spans lane above the curves, and the scroll bar beneath them."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, QSize, Qt
+from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QBrush, QColor, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
 from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
 
 from app.session import Change, Session
 from app.theme import GRID, Palette
-from engine.take import runs, timecode
+from app.timeline.waveform import draw_waveform
+from engine.take import timecode
 
-RULER_PX, SPANS_PX, LABEL_PX = 26, 22, 76
+RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 76
+SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 
 
@@ -23,14 +25,17 @@ class Timeline(QWidget):
     gutter_px : width of the lanes' gutter, so that frames stand under their ticks
     """
 
+    marked = Signal()  # the selection was drawn in the lane: it is to become a span
+
     def __init__(self, session: Session, colours: Palette, *, gutter_px: int) -> None:
         super().__init__()
         self._session, self._colours, self._gutter = session, colours, gutter_px
         self._selecting: int | None = None
+        self._marking = self._scrubbing = False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setMouseTracking(True)
         self.setAccessibleName("Timeline")
-        self.setToolTip("Drag to scrub. Shift-drag to select a range. Wheel to zoom.")
+        self.setToolTip("Drag on the ruler to scrub, in the spans lane to mark. Shift-drag selects, the wheel zooms.")
         session.changed.connect(self._on_change)
 
     def paint_with(self, colours: Palette) -> None:
@@ -40,16 +45,22 @@ class Timeline(QWidget):
 
     def sizeHint(self) -> QSize:
         """As high as its lanes."""
-        return QSize(400, RULER_PX + SPANS_PX)
+        return QSize(400, self._spans_top() + SPANS_PX)
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.VIEW | Change.PLAYHEAD | Change.SELECTION):
+        if change & (Change.TAKE | Change.MEDIA):
+            self.updateGeometry()
+        shown = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
+        if change & shown:
             self.update()
 
     # --- geometry
 
+    def _spans_top(self) -> int:
+        return RULER_PX + (AUDIO_PX if self._session.audio is not None else 0)
+
     def _span_px(self) -> float:
-        return max(1.0, self.width() - self._gutter - GRID)
+        return max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
 
     def x_of(self, frame: float) -> float:
         """Return the position of a frame in the widget."""
@@ -64,14 +75,17 @@ class Timeline(QWidget):
     # --- drawing
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw ruler, spans, selection and playhead."""
+        """Draw ruler, waveform, spans, selection and playhead."""
         painter = QPainter(self)
         painter.setPen(QColor(self._colours.quiet))
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-        painter.drawText(QRectF(GRID, RULER_PX, self._gutter, SPANS_PX), left, "spans")
+        painter.drawText(QRectF(GRID, self._spans_top(), self._gutter, SPANS_PX), left, "spans")
+        if self._session.audio is not None:
+            painter.drawText(QRectF(GRID, RULER_PX, self._gutter, AUDIO_PX), left, "audio")
         painter.setClipRect(QRectF(self._gutter, 0, self._span_px(), self.height()))
         self._draw_selection(painter)
         self._draw_ticks(painter)
+        self._draw_audio(painter)
         self._draw_spans(painter)
         x = self.x_of(self._session.playhead)
         painter.setPen(QPen(QColor(self._colours.text), 1))
@@ -101,62 +115,78 @@ class Timeline(QWidget):
             time_s = index * step
             x = self.x_of(time_s * fps)
             painter.setPen(QColor(self._colours.quiet))
-            label = max(x - 50, self._gutter - 50 + LABEL_PX / 2)
-            painter.drawText(QRectF(label, 4, 100, 14), middle, timecode(time_s, fps))
+            if x >= self._gutter + LABEL_PX / 2 - 6:  # the first would be cut in half
+                painter.drawText(QRectF(x - 50, 4, 100, 14), middle, timecode(time_s, fps))
             painter.setPen(QColor(self._colours.edge))
             painter.drawLine(int(x), 20, int(x), RULER_PX)
             index += 1
+
+    def _draw_audio(self, painter: QPainter) -> None:
+        session = self._session
+        if session.audio is not None:
+            first_s, last_s = (frame / session.take.fps - session.audio_offset_s for frame in session.view)
+            box = QRectF(self._gutter, RULER_PX + 2, self._span_px(), AUDIO_PX - 4)
+            draw_waveform(painter, session.audio, box, (first_s, last_s), self._colours.quiet)
 
     def _draw_spans(self, painter: QPainter) -> None:
         warning = QColor(self._colours.warning)
         tint = QColor(warning)
         tint.setAlphaF(0.12)
-        for start, stop in runs(self._session.take.lost):
-            left, right = self.x_of(start - 0.5), self.x_of(stop - 0.5)
+        for span in self._session.marks.spans:
+            left, right = self.x_of(span.start - 0.5), self.x_of(span.stop - 0.5)
             if right < self._gutter or left > self.width():
                 continue
-            box = QRectF(left, RULER_PX + 3, max(3.0, right - left), SPANS_PX - 7)
+            box = QRectF(left, self._spans_top() + 3, max(3.0, right - left), SPANS_PX - 7)
             painter.fillRect(box, tint)
             painter.fillRect(box, QBrush(warning, Qt.BrushStyle.BDiagPattern))
             painter.setPen(QPen(warning, 1))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(box)
-            if box.width() > 40:
-                text = painter.fontMetrics().horizontalAdvance("lost") + 10
+            title = "lost" if span.kind == "lost" else span.region
+            text = painter.fontMetrics().horizontalAdvance(title) + 10
+            if box.width() > text + 4:
                 label = QRectF(box.center().x() - text / 2, box.top() + 1, text, box.height() - 2)
                 painter.fillRect(label, QColor(self._colours.panel))
-                painter.drawText(label, Qt.AlignmentFlag.AlignCenter, "lost")
+                painter.drawText(label, Qt.AlignmentFlag.AlignCenter, title)
 
     # --- the mouse
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Scrub; with Shift begin to select; on a span select it."""
+        """Scrub on the ruler; on the lane choose a span, or begin to mark one; with Shift select."""
         if event.button() != Qt.MouseButton.LeftButton:
             return
         frame = round(self.frame_at(event.position().x()))
-        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            self._selecting = frame
-            return
-        if event.position().y() > RULER_PX:
-            hit = [span for span in runs(self._session.take.lost) if span[0] <= frame < span[1]]
-            self._session.select(hit[0] if hit else None)
-        self._session.move_playhead(frame)
+        in_lane = event.position().y() > self._spans_top()
+        hit = [span for span in self._session.marks.spans if span.start <= frame < span.stop] if in_lane else []
+        if hit:
+            self._session.select((hit[0].start, hit[0].stop))
+            self._session.move_playhead(hit[0].start)
+        elif in_lane or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            self._selecting, self._marking = frame, in_lane
+        else:
+            self._scrubbing = True
+            self._session.move_playhead(frame)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Go on scrubbing or selecting."""
-        if not event.buttons() & Qt.MouseButton.LeftButton:
-            return
+        """Go on with what the press began."""
         frame = round(self.frame_at(event.position().x()))
         if self._selecting is not None:
-            self._session.select((self._selecting, frame))
-        else:
+            first, last = sorted((self._selecting, frame))
+            self._session.select((first, last + 1))
+        elif self._scrubbing:
             self._session.move_playhead(frame)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """End the selection; Shift with a mere click clears it."""
-        if self._selecting is not None and round(self.frame_at(event.position().x())) == self._selecting:
+        """End the selection, or make it a span; a mere click clears it."""
+        frame, selecting = round(self.frame_at(event.position().x())), self._selecting
+        self._selecting, self._scrubbing = None, False
+        if selecting is None:
+            return
+        if frame == selecting:
             self._session.select(None)
-        self._selecting = None
+            self._session.move_playhead(frame)
+        elif self._marking:
+            self.marked.emit()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom around the pointer; with Shift or sideways pan."""

@@ -14,11 +14,17 @@ Report = Callable[[str], None]
 
 # Each is a module of this package with `table(data, report)` and, where the paper draws it, `figures(data, folder, report)`.
 TABLES: dict[str, str] = {
+    "clean": "Tracker noise removed: error, closures and lag at four frame rates (BSS20b tables 1 and 2)",
     "regress": "Control curves to weights: mean squared error, closures (BSBS19 table 1, figure 8)",
     "inpaint": "Filling spans: error, spectra, closures and seams per length and guidance (BSS20 section 5)",
     "controls": "Weights from control curves alone, of the whole take (BSS20 table 4)",
     "asked": "Masked bilabials, blinks and smiles that come back from one pin or viseme",
     "bezier": "Points that a hand edit would need, and our time (BSS20 table 3)",
+    "regress_edits": "Requests that no face fits: how like a recording the result is (BSBS19 section 5.3)",
+    "regress_takes": "The regressor on each recorded take, trained on all others",
+    "regress_levers": "What each augmentation and loss term does for the regressor",
+    "spacetime": "Performances carried to a second head and back (SLS12 figures 9, 11)",
+    "manifold": "Retargeting from labelled frames, driving a mesh by points: error in mm (ZLL17 figures 6 to 10)",
 }
 
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from engine.controls import CONTROL_INDEX, bundled_measurer
 from engine.corpus import Piece
-from engine.evaluate.inpaint import pieces_to_measure
-from engine.evaluate.motion import npss
 from engine.evaluate import regressors
 from engine.evaluate.baselines import bsbs19, hsk16
+from engine.evaluate.inpaint import pieces_to_measure
+from engine.evaluate.motion import npss
 from engine.inpaint.gap import gap_of
 from engine.inpaint.infer import bundled
 from engine.take import MODEL_FPS, SHAPES, Array

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from engine.errors import EngineError
@@ -13,16 +14,25 @@ from engine.errors import EngineError
 def write_bytes(path: Path, chunks: Iterable[bytes]) -> None:
     """Write `chunks` to `path` so that a kill at any moment leaves the old file or the new one.
 
-    The temporary file lies in the same folder, since a rename is atomic only within one file system.
     Raises `EngineError` when the folder cannot be written or the disk is full.
+    """
+    with replacement(path) as temporary, temporary.open("wb") as file:
+        for chunk in chunks:
+            file.write(chunk)
+
+
+@contextmanager
+def replacement(path: Path) -> Iterator[Path]:
+    """Give a temporary file to write to; when that has gone well it takes the place of `path`, else it is removed.
+
+    It lies in the same folder, since a rename is atomic only within one file system. Raises `EngineError` when the
+    folder cannot be written or the disk is full.
     """
     temporary: str | None = None
     try:
         descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name[:80]}.", suffix=".part", dir=path.parent)
-        with os.fdopen(descriptor, "wb") as file:
-            for chunk in chunks:
-                file.write(chunk)
-            file.flush()
+        with os.fdopen(descriptor, "r+b") as file:
+            yield Path(temporary)
             os.fsync(file.fileno())
         os.chmod(temporary, _mode_of(path))
         os.replace(temporary, path)

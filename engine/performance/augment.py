@@ -24,6 +24,7 @@ class Levers:
     warp : largest relative change of tempo
     mix : share of copies that are a mixture of two pieces
     recombine : share of copies that take the upper face from another piece
+    stretch : frames that share one draw of all this, so that a long take makes many people; 0 for a piece at a time
     """
 
     copies: int = 6
@@ -32,6 +33,7 @@ class Levers:
     warp: float = 0.2
     mix: float = 0.3
     recombine: float = 0.3
+    stretch: int = 0
 
 
 def _other_side(name: str) -> str:
@@ -50,12 +52,18 @@ def mirrored(weights: Array) -> Array:
 
 
 def augment(pieces: Sequence[Array], levers: Levers, rng: np.random.Generator) -> list[Array]:
-    """Return the pieces, (frames, 52) each, followed by `levers.copies` variants of each, all within 0..1."""
+    """Return the pieces, (frames, 52) each, followed by `levers.copies` variants of each or of each stretch of it,
+    all within 0..1."""
     made = list(pieces)
     for piece in pieces:
         for _ in range(levers.copies):
-            made.append(_variant(piece, pieces, levers, rng))
+            made += [_variant(part, pieces, levers, rng) for part in _stretches(piece, levers.stretch)]
     return made
+
+
+def _stretches(piece: Array, frames: int) -> list[Array]:
+    """Cut a piece into near-equal stretches of about `frames`; all of it where that is 0."""
+    return np.array_split(piece, max(1, round(len(piece) / frames))) if frames else [piece]
 
 
 def _variant(piece: Array, pieces: Sequence[Array], levers: Levers, rng: np.random.Generator) -> Array:

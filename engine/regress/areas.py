@@ -8,15 +8,20 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.controls import CONTROL_INDEX
+from engine.extended import EXTENDED_INDEX
 from engine.take import SHAPES
 
-_LIDS = ("eyeBlink", "eyeSquint", "eyeWide", "eyeLook")
+_COLUMNS = CONTROL_INDEX | EXTENDED_INDEX
 _UPPER = ("brow", "cheekSquint", "noseSneer")
 
 
 @dataclass(frozen=True)
 class Area:
-    """Shapes that one network makes, and the controls it makes them from."""
+    """Shapes that one network makes, and the controls it makes them from.
+
+    Gaze is in none of `AREAS`: two lid distances cannot tell where the eyes look, so an edit of the lids leaves gaze as
+    it was recorded.
+    """
 
     name: str
     controls: tuple[str, ...]
@@ -26,7 +31,7 @@ class Area:
     @property
     def control_columns(self) -> npt.NDArray[np.int64]:
         """Columns of the control curves that the network reads."""
-        return np.array([CONTROL_INDEX[name] for name in self.controls])
+        return np.array([_COLUMNS[name] for name in self.controls])
 
     @property
     def shape_columns(self) -> npt.NDArray[np.int64]:
@@ -38,5 +43,12 @@ _MOUTH = ("lips_vertical", "lips_horizontal", "corner_right", "corner_left", "no
 AREAS: tuple[Area, ...] = (
     Area("lower", _MOUTH, ("jaw", "mouth", "cheekPuff", "tongue"), False),
     Area("upper", ("eyelid_right", "eyelid_left", "corner_right", "corner_left", "nose_to_lip"), _UPPER, True),
-    Area("eyelids", ("eyelid_right", "eyelid_left"), _LIDS, True),
+    Area("eyelids", ("eyelid_right", "eyelid_left"), ("eyeBlink", "eyeSquint", "eyeWide"), True),
+)
+
+# With the extended controls, these networks replace what the areas above say of their shapes.
+EXTENDED_AREAS: tuple[Area, ...] = (
+    Area("brows", ("brow_right", "brow_left", "brow_inner"), ("brow",), True),
+    Area("jaw", (*_MOUTH, "jaw_sideways"), ("jawRight", "jawLeft", "mouthRight", "mouthLeft"), True),
+    Area("gaze", ("gaze_horizontal", "gaze_vertical"), ("eyeLook",), True),
 )

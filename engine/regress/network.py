@@ -66,16 +66,29 @@ class UNet(nn.Module):
 
 
 class AreaNetwork(nn.Module):
-    """Autoencoder on regressor for one area: controls in mm -> weights; `full=False` stops at the regressor."""
+    """Autoencoder on regressor for one area: controls in mm -> weights; `full=False` stops at the regressor.
+
+    The full system takes a control no further than the recorded faces went (`low`, `high`), and hands weights
+    in 0..1 to the autoencoder: what nobody's face can do is bounded before it is judged.
+    """
+
+    low: Tensor
+    high: Tensor
 
     def __init__(self, regressor: UNetConfig, autoencoder: UNetConfig) -> None:
         super().__init__()
         self.regressor, self.autoencoder = UNet(regressor), UNet(autoencoder)
+        self.register_buffer("low", torch.full((1, regressor.inputs, 1), -torch.inf))
+        self.register_buffer("high", torch.full((1, regressor.inputs, 1), torch.inf))
 
     def forward(self, controls: Tensor, *, full: bool = True) -> Tensor:
         """Return weights, (batch, shapes, frames), of controls, (batch, controls, frames) in mm."""
-        weights: Tensor = self.regressor(controls)
-        return self.autoencoder(weights) if full else weights
+        if not full:
+            weights: Tensor = self.regressor(controls)
+            return weights
+        bounded = torch.minimum(torch.maximum(controls, self.low), self.high)
+        cleaned: Tensor = self.autoencoder(self.regressor(bounded).clamp(0.0, 1.0))
+        return cleaned
 
     def config(self) -> dict[str, Any]:
         """Return what rebuilds this module."""

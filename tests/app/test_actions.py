@@ -2,18 +2,27 @@ from __future__ import annotations
 
 from collections import Counter
 
-from app.actions import ACTIONS, MENUS, TOOLBAR
+import pytest
+
+from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
+from app.edit_actions import EditActions
+from app.file_actions import FileActions
 from app.main_window import MainWindow
+from app.time_actions import TimeActions
+
+OWNERS = (MainWindow, FileActions, EditActions, TimeActions)
 
 
-def test_no_shortcut_stands_twice() -> None:
-    keys = Counter(key.lower() for entry in ACTIONS for key in entry.keys)
+@pytest.mark.parametrize("preset", list(PRESETS))
+def test_no_shortcut_stands_twice(preset: str) -> None:
+    assert set(PRESETS[preset]) <= {entry.name for entry in ACTIONS}
+    keys = Counter(key.lower() for entry in ACTIONS for key in keys_of(entry, preset))
     assert [key for key, count in keys.items() if count > 1] == []
 
 
 def test_each_action_can_be_done_has_a_menu_and_a_twin_or_a_reason() -> None:
     for entry in ACTIONS:
-        assert callable(getattr(MainWindow, entry.name)), entry.name
+        assert any(callable(getattr(owner, entry.name, None)) for owner in OWNERS), entry.name
         assert entry.menu in MENUS
         assert entry.twin
 

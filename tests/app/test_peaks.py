@@ -29,5 +29,5 @@ def test_the_brush_moves_only_its_reach(centre: int, radius: int) -> None:
     assert follows[centre] == 1.0
     assert (follows[:start] == 0).all() and (follows[stop:] == 0).all()
     curve = np.full(stop - start, 5.0)
-    lowered = pulled(curve, start, centre, by_mm=-20.0, radius_frames=radius, strength=1.0)
+    lowered = pulled(curve, start, centre, by=-20.0, radius_frames=radius, strength=1.0)
     assert lowered.min() == 0.0 and (lowered <= curve).all()

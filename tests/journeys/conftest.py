@@ -15,7 +15,9 @@ from engine.performance import demo
 @pytest.fixture
 def window(qtbot: QtBot, tmp_path: Path) -> Iterator[MainWindow]:
     """The window on the demo take, networks loaded and first picture drawn."""
-    opened = MainWindow(read_take(demo.BUNDLED), demo.BUNDLED, Settings(tmp_path / "settings.ini"))
+    opened = MainWindow(
+        read_take(demo.BUNDLED), demo.BUNDLED, Settings(tmp_path / "settings.ini"), unsaved=tmp_path / "unsaved"
+    )
     with qtbot.waitSignals([opened.inference.ready, opened.preview.drawing.done], timeout=60_000):
         opened.show()
     settled(qtbot, opened)
@@ -29,7 +31,7 @@ def settled(qtbot: QtBot, window: MainWindow) -> None:
     """Wait until nothing is inferred or drawn any more, full resolution included."""
 
     def nothing_left() -> bool:
-        return window.inference._work.idle and window.preview.drawing.idle and not window.preview._still.isActive()
+        return window.inference.idle and window.preview.drawing.idle and not window.preview._still.isActive()
 
     qtbot.waitUntil(nothing_left, timeout=30_000)
     qtbot.wait(20)  # results that were finished are still on their way to this thread

@@ -79,13 +79,21 @@ def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
     for again, edited in zip((session.take.weights, session.controls, pixels(window)), after, strict=True):
         np.testing.assert_array_equal(again, edited)
 
-    target = tmp_path / "Ärger 顔.csv"
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(target), ""))
+    project, exported = tmp_path / "Ärger 顔.retake", tmp_path / "Ärger 顔.csv"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(project), ""))
     QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
     assert not session.edited
-    np.testing.assert_allclose(read_take(target).weights, session.take.weights, atol=1e-8)
-    assert window.load(target)
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(exported), ""))
+    QTest.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
+    np.testing.assert_allclose(read_take(exported).weights, session.take.weights, atol=1e-8)
+
+    assert window.load(exported)
     np.testing.assert_allclose(session.take.weights, after[0], atol=1e-8)
+    assert window.load(project)
+    np.testing.assert_array_equal(session.take.weights, after[0])
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    settled(qtbot, window)
+    np.testing.assert_array_equal(session.take.weights, before[0])
 
 
 def test_play_and_step_by_keys(qtbot: QtBot, window: MainWindow) -> None:
@@ -115,7 +123,7 @@ def test_escape_drops_the_drag_under_way(qtbot: QtBot, window: MainWindow) -> No
 def test_close_here_shuts_the_lips_on_the_selection(qtbot: QtBot, window: MainWindow) -> None:
     window.session.choose_lane(LIPS)
     window.session.select((70, 90))
-    QTest.mouseClick(window.inspector.close_button, Qt.MouseButton.LeftButton)
+    QTest.mouseClick(window.value.close_button, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: window.session.undo.count() == 1, timeout=10_000)
     assert window.session.controls[70:90, LIPS].max() < 2.0
     assert window.session.undo.undoText() == "close lips apart"

@@ -1,0 +1,1 @@
+"""Cleaning: taking the tracker's noise off a span or a take."""

@@ -1,0 +1,101 @@
+"""The Clean tool's settings: one strength, a live preview, and the lag it costs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtWidgets import QPushButton, QSpinBox
+
+from app.inference import Inference
+from app.section import Section, quiet, slider
+from app.session import Change, Session
+
+if TYPE_CHECKING:
+    from engine.editing import Dragger, Patch
+    from engine.take import Take
+
+FULL = 100
+
+
+class CleanSection(Section):
+    """Removes jitter from the selection, or the whole take, by as much as the slider says.
+
+    Parameters
+    ----------
+    session : whose take is cleaned
+    inference : carries it out
+    """
+
+    tools = frozenset({"clean"})
+
+    def __init__(self, session: Session, inference: Inference) -> None:
+        super().__init__(session, "Clean")
+        self._inference = inference
+        self._estimate: tuple[object, Take, float] | None = (
+            None  # for which take and frames, cleaned fully, and its lag
+        )
+        self.strength = QSpinBox(minimum=0, maximum=FULL, suffix=" %")
+        self.strength.setValue(80)
+        self._slider = slider(0, FULL)
+        self._slider.setValue(80)
+        self.row("Strength", self.strength)
+        self.column.addWidget(self._slider)
+        self.preview_button, self.keep_button, self.drop_button = (
+            QPushButton("Preview"),
+            QPushButton("Clean"),
+            QPushButton("Drop"),
+        )
+        self.keep_button.setProperty("primary", True)
+        self.side_by_side(self.preview_button, self.keep_button, self.drop_button)
+        self._facts = quiet("The selection, or the whole take where nothing is selected.")
+        self.column.addWidget(self._facts)
+        self._slider.valueChanged.connect(self.strength.setValue)
+        self.strength.valueChanged.connect(self._slider.setValue)
+        self.strength.valueChanged.connect(self._previewed)
+        self.preview_button.clicked.connect(self.preview)
+        self.keep_button.clicked.connect(self.keep)
+        self.drop_button.clicked.connect(inference.cancel)
+        session.changed.connect(self._on_change)
+
+    def preview(self) -> None:
+        """Show what cleaning does."""
+        frames = self.session.selection or (0, len(self.session.take))
+        strength = self.strength.value() / FULL
+
+        def verb(dragger: Dragger) -> Patch:
+            from engine.clean.takes import clean
+            from engine.editing import Patch
+
+            wanted = (dragger.take, frames)
+            if self._estimate is None or self._estimate[0] != wanted:
+                cleaned = clean(dragger.take, frames=frames)
+                self._estimate = (wanted, cleaned.take, cleaned.lag_ms)
+            rows = slice(*frames)
+            raw, full = dragger.take.weights[rows], self._estimate[1].weights[rows]
+            mixed = dragger.take.with_rows(frames[0], raw + strength * (full - raw))
+            return Patch.between(dragger.take, mixed, frames)
+
+        self._inference.run(verb)
+
+    def keep(self) -> None:
+        """Clean, as one undo step."""
+        self.preview()
+        strength = self.strength.value()
+        self._inference.finish(f"clean at {strength} %", kind="clean", inputs={"strength": strength / FULL})
+
+    def _previewed(self, _: int) -> None:
+        if self._inference.busy:
+            self.preview()
+
+    def _on_change(self, change: Change) -> None:
+        if change & Change.DRAFT and self.session.tool == "clean":
+            draft = self.session.draft
+            if draft is None or self._estimate is None:
+                self._facts.setText("The selection, or the whole take where nothing is selected.")
+                return
+            removed = np.abs(draft.weights - self.session.take.weights[draft.start : draft.stop])
+            lag = self._estimate[2]
+            lines = [f"takes off {removed.mean():.4f} on average, {removed.max():.2f} at most"]
+            lines += [f"lag {lag:.0f} ms at full strength"] if np.isfinite(lag) else []
+            self._facts.setText("\n".join(lines))

@@ -1,0 +1,144 @@
+"""`retake character import` and `retake drive`: other heads, with shapes or without."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from engine.errors import EditError
+
+if TYPE_CHECKING:
+    from engine.formats.characters.assemble import Import
+
+Names = Annotated[
+    list[str] | None, typer.Option("--name", help="Correct a match: the file's name=ARKit shape, or name=.")
+]
+Landmarks = Annotated[list[str] | None, typer.Option("--landmark", help="Place a landmark by hand: name=vertex.")]
+Unit = Annotated[str | None, typer.Option(help="The file's unit, mm, cm, m or in; detected otherwise.")]
+Up = Annotated[str | None, typer.Option(help="The file's upward axis, y or z; detected otherwise.")]
+
+
+def import_(
+    path: Annotated[Path, typer.Argument(help="A glTF or GLB file, a folder of OBJ files, or an ICT-FaceKit.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Where the character is written.")],
+    unit: Unit = None,
+    up: Up = None,
+    names: Names = None,
+    landmarks: Landmarks = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Make a character of another program's head, and show what each of its shapes was taken for."""
+    from app.cli.tables import show
+    from engine.character import save
+
+    made = imported(path, unit=unit, up=up, names=names or [], landmarks=landmarks or [])
+    save(made.character, out)
+    if as_json:
+        print(json.dumps(_summary(made)))
+        return
+    rows = [
+        {"in the file": row.source, "shape": row.shape, "likeness": row.likeness, "taken": row.sure}
+        for row in made.matches
+    ]
+    show(path.name, rows, as_json=False)
+    for notice in made.notices:
+        print(notice)
+    print(f"Imported {len(made.character.neutral)} vertices. Written to {out}.")
+
+
+def imported(path: Path, *, unit: str | None, up: str | None, names: list[str], landmarks: list[str]) -> Import:
+    """Read a head and correct what was detected; raises `EngineError`."""
+    from engine.formats.characters import read
+    from engine.formats.characters.assemble import UNITS_MM, UP, Frame, assemble, detect_frame
+    from engine.formats.characters.names import corrected, match_names
+
+    for value, known, what in ((unit, tuple(UNITS_MM), "unit"), (up, UP, "upward axis")):
+        if value is not None and value not in known:
+            raise EditError(f"There is no {what} called {value!r}.", f"Use one of: {', '.join(known)}.")
+    raw = read(path)
+    found = detect_frame(raw)
+    places = {name: _vertex(name, vertex) for name, vertex in _pairs(landmarks).items()}
+    return assemble(
+        raw,
+        frame=Frame(unit or found.unit, up or found.up),
+        matches=corrected(match_names(raw.shapes), _pairs(names)),
+        landmarks=places,
+    )
+
+
+def _summary(made: Import) -> dict[str, object]:
+    return {
+        "vertices": len(made.character.neutral),
+        "unit": made.frame.unit,
+        "up": made.frame.up,
+        "shapes": [{"source": row.source, "shape": row.shape, "likeness": row.likeness} for row in made.matches],
+        "landmarks": made.character.landmarks,
+        "landmark_mm": made.landmark_mm,
+        "notices": list(made.notices),
+    }
+
+
+def _pairs(texts: list[str]) -> dict[str, str]:
+    pairs = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise EditError(f"{text!r} is not a name and a value.", "Write them with = between.")
+        pairs[name.strip()] = value.strip()
+    return pairs
+
+
+def _vertex(name: str, text: str) -> int:
+    if not (text.isascii() and text.isdigit() and len(text) < 10):
+        raise EditError(f"The landmark {name!r} needs the number of a vertex, not {text!r}.")
+    return int(text)
+
+
+def drive(
+    markers: Annotated[Path, typer.Argument(help="Markers in a CSV, TRC or C3D file, or a take.")],
+    mesh: Annotated[Path, typer.Option(help="The head to move: OBJ, glTF, or anything `character import` reads.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Where the moving mesh is written: .glb or .npz.")],
+    points: Annotated[
+        Path | None, typer.Option(help="Which vertex follows which marker: a CSV of marker,vertex; found otherwise.")
+    ] = None,
+    neutral: Annotated[int, typer.Option(help="For markers: a frame in which the face is at rest.")] = 0,
+    unit: Unit = None,
+    up: Up = None,
+) -> None:
+    """Move a head that needs no shapes by points on its face."""
+    import numpy as np
+
+    from app.cli.spacetime import _source
+    from engine.formats import markers_layout
+    from engine.formats.characters.animation import MovingMesh, write
+    from engine.manifold.drive import MeshDriver, aim
+    from engine.spacetime.layout import standard
+
+    head = imported(mesh, unit=unit, up=up, names=[], landmarks=[]).character
+    performance = _source(markers, neutral=neutral, unit=None, fps=None)
+    if points is not None:
+        followed = markers_layout.read(points, vertices=len(head.neutral))
+    else:
+        layout = standard(head)
+        followed = dict(zip(layout.names, (int(vertex) for vertex in layout.vertices), strict=True))
+    shared = [name for name in followed if name in performance.names]
+    if len(shared) < 4:
+        raise EditError(f"Only {len(shared)} of the mesh's points have a marker of their name.", "Name them alike.")
+    columns = [performance.names.index(name) for name in shared]
+    rest = head.neutral.astype(np.float64)
+    driver = MeshDriver(rest, head.triangles, np.array([followed[name] for name in shared]))
+    aimed = aim(rest[driver.points], performance.neutral[columns], performance.displacements[:, columns])
+    frames = np.stack([frame.astype(np.float32) for frame in driver.frames(aimed)])
+    write(MovingMesh(rest, head.triangles, frames, performance.take.fps), out)
+    print(f"Moved {len(rest)} vertices by {len(shared)} points over {len(frames)} frames. Written to {out}.")
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    family = typer.Typer(help="Heads from other programs.", no_args_is_help=True)
+    family.command("import")(import_)
+    app.add_typer(family, name="character")
+    app.command()(drive)

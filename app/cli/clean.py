@@ -1,0 +1,124 @@
+"""`retake clean`, `retake live` and `retake replay`: tracker noise removed, from a file or as it happens."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+
+from engine.errors import EngineError
+from engine.formats import read_take, write_take
+
+if TYPE_CHECKING:
+    from engine.live.listen import Listener
+
+console = Console()
+errors = Console(stderr=True)
+_TOLD_EVERY_S = 1.0
+
+
+def clean(
+    take: Annotated[Path, typer.Argument(help="The take to clean.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Where the cleaned take is written.")],
+    strength: Annotated[float, typer.Option(help="0 leaves the take as it is, 1 cleans it fully.")] = 1.0,
+    frames: Annotated[str | None, typer.Option(help="Only these frames, such as 40:60.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Remove the tracker's noise from a take; frames outside the range stay bit-identical."""
+    from engine.clean.takes import clean as clean_take
+    from engine.editing import parse_frames
+
+    recorded = read_take(take)
+    cleaned = clean_take(recorded, strength=strength, frames=parse_frames(frames, recorded) if frames else None)
+    write_take(cleaned.take, out)
+    start, stop = cleaned.touched
+    removed = float(abs(cleaned.removed).max())
+    if as_json:
+        print(json.dumps({"out": str(out), "frames": [start, stop], "removed": removed, "lag_ms": cleaned.lag_ms}))
+    else:
+        console.print(f"cleaned frames {start}:{stop} of {recorded.name}, at most {removed:.3f} of a weight removed")
+        console.print(f"wrote {out}", highlight=False)
+
+
+def live(
+    *,
+    port: Annotated[int, typer.Option(help="UDP port; Live Link Face sends to 11111.")] = 11111,
+    bind: Annotated[
+        str, typer.Option(help="Address to listen on; a phone is heard on 0.0.0.0, not on loopback.")
+    ] = "127.0.0.1",
+    subject: Annotated[str | None, typer.Option(help="Whose face; the first that arrives otherwise.")] = None,
+    strength: Annotated[float, typer.Option(min=0.0, max=1.0, help="0 is raw, 1 is clean.")] = 1.0,
+    record: Annotated[Path | None, typer.Option(help="Write what was sent to this take at the end.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="Stop after this long; Ctrl+C otherwise.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object a second.")] = False,
+) -> None:
+    """Listen to a phone, clean its face as it comes, and record it."""
+    from engine.live.listen import Listener
+    from engine.live.record import Recorder
+    from engine.live.stream import Stream
+
+    recorder = Recorder()
+    stream = Stream(subject=subject, strength=strength, on_arrival=recorder.add if record else None)
+    with Listener(stream, bind=bind, port=port) as listener:
+        errors.print(f"listening on {listener.address[0]}:{listener.address[1]}", style="dim", highlight=False)
+        try:
+            _tell(listener, seconds, as_json=as_json)
+        except KeyboardInterrupt:
+            errors.print("stopped", style="dim")
+    if record is not None:
+        taken = recorder.take(record.name)
+        write_take(taken, record)
+        errors.print(f"wrote {record}: {len(taken)} frames, {int(taken.lost.sum())} of them lost", highlight=False)
+
+
+def _tell(listener: Listener, seconds: float | None, *, as_json: bool) -> None:
+    began = time.monotonic()
+    while seconds is None or time.monotonic() - began < seconds:
+        left = _TOLD_EVERY_S if seconds is None else min(_TOLD_EVERY_S, seconds - (time.monotonic() - began))
+        time.sleep(max(0.0, left))
+        status = listener.status()
+        listener.frames()
+        latency = None if status.latency_p95_ms != status.latency_p95_ms else round(status.latency_p95_ms, 3)
+        if as_json:
+            told = {"subjects": status.subjects, "frames": status.frames, "drops": status.drops}
+            print(json.dumps({**told, "latency_p95_ms": latency}), flush=True)
+        else:
+            drops = ", ".join(f"{count} {reason}" for reason, count in status.drops.items()) or "none dropped"
+            console.print(f"{status.frames} frames, {drops}, p95 {latency} ms", highlight=False)
+
+
+def replay(
+    take: Annotated[Path, typer.Argument(help="The take to send.")],
+    *,
+    to: Annotated[str, typer.Option(help="HOST:PORT to send to.")] = "127.0.0.1:11111",
+    loss: Annotated[float, typer.Option(min=0.0, max=1.0, help="Share of packets that never arrive.")] = 0.0,
+    reorder: Annotated[float, typer.Option(min=0.0, max=1.0, help="Share that arrives behind the next.")] = 0.0,
+    jitter_ms: Annotated[float, typer.Option(min=0.0, max=1000.0, help="Largest delay of a packet.")] = 0.0,
+    repeat: Annotated[bool, typer.Option(help="Play it over and over, until Ctrl+C.")] = False,
+    subject: Annotated[str, typer.Option(help="The name that is sent.")] = "Retake",
+) -> None:
+    """Send a take at its own rate, as a phone would."""
+    from engine.live.replay import Network
+    from engine.live.replay import replay as send
+
+    network = Network(loss, reorder, jitter_ms / 1e3)
+    sent = send(read_take(take), _address(to), network, repeat=repeat, subject=subject)
+    console.print(f"sent {sent} packets to {to}", highlight=False)
+
+
+def _address(text: str) -> tuple[str, int]:
+    host, _, port = text.rpartition(":")
+    if not host or not port.isascii() or not port.isdigit() or not 0 < int(port) < 65536:
+        raise EngineError(f"{text!r} is no address.", "Write host and port: 127.0.0.1:11111.")
+    return host.strip("[]"), int(port)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(clean)
+    app.command()(live)
+    app.command()(replay)

@@ -1,0 +1,138 @@
+"""`retake pin` and `retake retarget`: poses that spread over a range, and performances that move to another head."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from engine.errors import EditError, FormatError
+
+if TYPE_CHECKING:
+    from engine.spacetime.source import Source
+
+
+def pin(
+    take: Annotated[Path, typer.Argument(help="The take to edit.")],
+    frame: Annotated[int, typer.Option(help="The frame the pose is pinned at.")],
+    frames: Annotated[
+        str, typer.Option("--range", help="Frames that may change: the first, and the one after the last.")
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Where the edited take is written.")],
+    weights: Annotated[str, typer.Option(help="Weights of the pose: mouthSmileLeft=.8,jawOpen=.2")] = "",
+    controls: Annotated[str, typer.Option("--control", help="Controls of the pose in mm: lips_vertical=0")] = "",
+    free: Annotated[bool, typer.Option("--free", help="Pin only the named weights; the others may follow.")] = False,
+    closure: Annotated[
+        float | None, typer.Option(help="How firmly lips and lids that meet keep meeting; 0 lets go.")
+    ] = None,
+) -> None:
+    """Pin a pose at a frame and let it spread over a range."""
+    from dataclasses import replace
+
+    from engine.editing import parse_frames
+    from engine.formats import read_take, write_take
+    from engine.spacetime import pin as pins
+    from engine.take import SHAPES
+
+    source = read_take(take)
+    named = assignments(weights)
+    if controls:
+        if free:
+            raise EditError("A control pins the whole pose.", "Leave out --free, or pin weights instead.")
+        pose = pins.pose_reaching(source, frame, assignments(controls))
+        named = {**dict(zip(SHAPES, pose.tolist(), strict=True)), **named}
+    if not named:
+        raise EditError("The pin has no pose.", "Name weights with --weights or controls with --control.")
+    spreading = (
+        pins.Spreading() if closure is None else replace(pins.Spreading(), closure=_strength("closure", closure))
+    )
+    edited = pins.pin(source, {frame: named}, parse_frames(frames, source), whole=not free, spreading=spreading)
+    write_take(edited, out)
+    print(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
+
+
+def retarget(
+    source: Annotated[Path, typer.Argument(help="A take, or markers in a CSV, TRC or C3D file.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Where the new take is written.")],
+    character: Annotated[Path | None, typer.Option(help="The character to move; the bundled head otherwise.")] = None,
+    landmarks: Annotated[
+        Path | None, typer.Option(help="Which vertex carries which marker: a CSV of marker,vertex.")
+    ] = None,
+    neutral: Annotated[int, typer.Option(help="For markers: a frame in which the face is at rest.")] = 0,
+    unit: Annotated[str | None, typer.Option(help="For markers: mm, cm or m, where the file does not say.")] = None,
+    fps: Annotated[
+        float | None, typer.Option(help="For markers: frames per second, where the file does not say.")
+    ] = None,
+    alpha: Annotated[float | None, typer.Option(help="How much likely poses count.")] = None,
+    beta: Annotated[float | None, typer.Option(help="How much places count beside movements.")] = None,
+    closure: Annotated[float | None, typer.Option(help="How firmly lips and lids meet where the source's do.")] = None,
+    unbounded: Annotated[bool, typer.Option("--unbounded", help="Let weights leave 0..1.")] = False,
+) -> None:
+    """Carry markers or a take to another character."""
+    from engine.character import bundled, load
+    from engine.formats import markers_layout, write_take
+    from engine.spacetime.layout import named
+    from engine.spacetime.retarget import Matching
+    from engine.spacetime.retarget import retarget as carry
+
+    target = bundled() if character is None else load(character)
+    layout = None
+    if landmarks is not None:
+        layout = named(markers_layout.read(landmarks, vertices=len(target.neutral)))
+    usual = Matching()
+    matching = Matching(
+        alpha=_strength("alpha", usual.alpha if alpha is None else alpha),
+        beta=_strength("beta", usual.beta if beta is None else beta),
+        closure=_strength("closure", usual.closure if closure is None else closure),
+        bounds=None if unbounded else usual.bounds,
+    )
+    performance = _source(source, neutral=neutral, unit=unit, fps=fps)
+    made = carry(performance, target, layout=layout, matching=matching)
+    write_take(made, out)
+    for notice in made.notices:
+        print(notice)
+    print(f"Moved {target.name} by {len(made)} frames of {source.name}. Written to {out}.")
+
+
+def _source(path: Path, *, neutral: int, unit: str | None, fps: float | None) -> Source:
+    from engine.character import bundled
+    from engine.formats import markers, read_take
+    from engine.spacetime.source import from_markers, from_take
+
+    if path.suffix.lower() in markers.ENDINGS and not _is_take(path):
+        return from_markers(markers.read(path, unit=unit, fps=fps), neutral_frame=neutral)
+    return from_take(read_take(path), bundled())
+
+
+def _is_take(path: Path) -> bool:
+    """Return whether a file begins as a Live Link Face take does; a CSV may also hold markers."""
+    try:
+        with path.open("rb") as file:
+            return file.read(16).removeprefix(b"\xef\xbb\xbf").lower().startswith(b"timecode")
+    except OSError as error:
+        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+
+
+def assignments(text: str) -> dict[str, float]:
+    """Return the values that `a=.8,b=.2` names; raises `EditError` for what is not that."""
+    values: dict[str, float] = {}
+    for part in filter(None, (piece.strip() for piece in text.split(","))):
+        name, _, value = part.partition("=")
+        try:
+            values[name.strip()] = float(value)
+        except ValueError:
+            raise EditError(f"{part!r} is not a name and a number.", "Write them as jawOpen=.2.") from None
+    return values
+
+
+def _strength(name: str, value: float) -> float:
+    if not 0 <= value < float("inf"):
+        raise EditError(f"{name} must be a number of zero or more.")
+    return value
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(pin)
+    app.command()(retarget)

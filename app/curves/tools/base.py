@@ -1,0 +1,80 @@
+"""What every tool can do, and what most of them share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QMouseEvent
+
+from app.curve_table import CURVES
+from engine.take import Array
+
+if TYPE_CHECKING:
+    from app.curves.panel import CurvesPanel
+    from engine.editing import Dragger, Patch
+
+FINE = 0.25  # with Shift, the pointer counts this much
+
+
+class Tool:
+    """A way of working on the curves; lanes are indices into CURVES, positions are in the panel."""
+
+    cursor = Qt.CursorShape.ArrowCursor
+
+    def __init__(self, panel: CurvesPanel) -> None:
+        self.panel = panel
+
+    @property
+    def busy(self) -> bool:
+        """Whether a gesture is under way."""
+        return False
+
+    def press(self, lane: int, event: QMouseEvent) -> None:
+        """Begin."""
+
+    def move(self, lane: int | None, event: QMouseEvent) -> None:
+        """Go on, or hover where nothing was begun; `lane` is what lies under the pointer."""
+
+    def release(self, event: QMouseEvent) -> None:
+        """Finish: one undo step."""
+
+    def leave(self) -> None:
+        """Put hints away."""
+        if not self.busy:
+            self.panel.show_brush(None, None)
+            self.panel.show_dot(None)
+            self.panel.show_readout("", QPointF())
+
+    def wheel(self, notches: float) -> None:
+        """Change the tool's size."""
+
+    def cancel(self) -> None:
+        """Drop what is under way."""
+
+    def refresh(self) -> None:
+        """Show the result that has come in."""
+
+    def ask(self, lane: int, start: int, curve: Array) -> None:
+        """Ask for a curve, (n,), in one lane from frame `start`: of a control through the networks, of a weight as it is."""
+        session = self.panel.session
+        column = CURVES[lane].column
+        if CURVES[lane].is_weight:
+
+            def replace(dragger: Dragger) -> Patch:
+                from engine.retouch import replace_weight
+
+                return replace_weight(dragger.take, column, start, curve)
+
+            self.panel.inference.run(replace)
+            return
+        asked = session.controls[start : start + len(curve)].copy()
+        asked[:, column] = curve.clip(min=0.0)
+        self.panel.inference.ask(start, asked)
+
+    def done(self, verb: str, lane: int, at: QPointF) -> None:
+        """Make what was asked one undo step, named after the verb and the curve."""
+        if self.panel.inference.busy:
+            self.panel.inference.finish(f"{verb} {CURVES[lane].title}")
+        self.panel.show_brush(None, None)
+        self.panel.show_readout("", at)

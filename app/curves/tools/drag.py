@@ -1,0 +1,102 @@
+"""Drag: pull a curve anywhere, and a soft brush bends it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QMouseEvent
+
+from app.curve_table import CURVES
+from app.curves.brush import pulled, reach
+from app.curves.tools.base import FINE, Tool
+
+
+class DragTool(Tool):
+    """Pull a curve anywhere; a soft brush bends it and the face follows."""
+
+    cursor = Qt.CursorShape.SizeVerCursor
+    _lane: int | None = None
+    _centre = 0
+    _from = QPointF()
+    _by = 0.0
+
+    @property
+    def busy(self) -> bool:
+        """Whether a curve is held."""
+        return self._lane is not None
+
+    def press(self, lane: int, event: QMouseEvent) -> None:
+        """Take hold of the curve at the frame under the pointer."""
+        session = self.panel.session
+        frame = round(self.panel.frame_at(event.position()))
+        if not 0 <= frame < len(session.take) or self.panel.inference.busy or session.draft is not None:
+            return
+        self._lane, self._centre, self._from, self._by = lane, frame, event.position(), 0.0
+        session.move_playhead(frame)
+        self._hint(lane, frame, event.position())
+
+    def move(self, lane: int | None, event: QMouseEvent) -> None:
+        """Pull by as much as the pointer has gone up; show where one could pull otherwise."""
+        if self._lane is None:
+            self._hover(lane, event.position())
+            return
+        shown = self.panel.lane(self._lane)
+        fine = FINE if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1.0
+        self._by += fine * (shown.value_at(event.position().y()) - shown.value_at(self._from.y()))
+        self._from = event.position()
+        self._pull()
+        self._hint(self._lane, self._centre, event.position())
+
+    def release(self, event: QMouseEvent) -> None:
+        """Make the drag one undo step; a click without a pull is none."""
+        if self._lane is not None:
+            lane, self._lane = self._lane, None
+            self.done("drag", lane, event.position())
+
+    def wheel(self, notches: float) -> None:
+        """Widen or narrow the brush."""
+        session = self.panel.session
+        session.set_brush(radius_frames=round(session.radius_frames * 1.15**notches + (notches > 0)))
+        if self._lane is not None:
+            self._pull()
+
+    def cancel(self) -> None:
+        """Let the curve spring back."""
+        if self._lane is not None:
+            self._lane = None
+            self.panel.inference.cancel()
+            self.leave()
+
+    def refresh(self) -> None:
+        """Let handle and read-out follow the face, which answers a moment after the pointer."""
+        if self._lane is not None and self.panel.session.draft is not None:
+            self._hint(self._lane, self._centre, self._from)
+
+    def _pull(self) -> None:
+        if self._lane is None or not self._by:
+            return
+        session = self.panel.session
+        start, stop = reach(self._centre, session.radius_frames, len(session.take))
+        curve = session.curve(self._lane)[start:stop]
+        radius = session.radius_frames
+        bent = pulled(curve, start, self._centre, by=self._by, radius_frames=radius, strength=session.strength)
+        self.ask(self._lane, start, bent)
+
+    def _hint(self, lane: int, frame: int, at: QPointF) -> None:
+        session, shown, curve = self.panel.session, self.panel.lane(lane), CURVES[lane]
+        asked = max(0.0, float(session.curve(lane)[frame]) + session.strength * self._by)
+        reached = session.value(lane, frame)
+        self.panel.show_brush(shown, reach(frame, session.radius_frames, len(session.take)))
+        self.panel.show_dot(shown, frame, reached)
+        if self._by:
+            self.panel.show_readout(f"asked {curve.shown(asked)}   reached {curve.shown(reached)}", at)
+
+    def _hover(self, lane: int | None, at: QPointF) -> None:
+        session = self.panel.session
+        frame = round(self.panel.frame_at(at))
+        if lane is None or not 0 <= frame < len(session.take):
+            self.leave()
+            return
+        shown, curve, value = self.panel.lane(lane), CURVES[lane], session.value(lane, frame)
+        self.panel.show_dot(shown, frame, value)
+        self.panel.show_brush(shown, reach(frame, session.radius_frames, len(session.take)))
+        self.panel.show_readout(f"{curve.title} {curve.shown(value)} · frame {frame} · drag to change", at)

@@ -1,0 +1,63 @@
+"""The Drag tool's brush."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker
+from PySide6.QtWidgets import QCheckBox, QSpinBox
+
+from app.section import Section, slider
+from app.session import Change, Session
+
+
+class BrushSection(Section):
+    """Radius and strength, by slider and by typing, and whether the curve is hit exactly."""
+
+    tools = frozenset({"drag", "draw", "scale"})
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session, "Brush")
+        self.radius = QSpinBox(minimum=1, maximum=300, suffix=" frames")
+        self.radius.setToolTip("How many frames on either side follow. Turn the wheel while dragging to change it.")
+        self._radius_slider = slider(1, 120)
+        self.row("Radius", self.radius)
+        self.column.addWidget(self._radius_slider)
+        self.strength = QSpinBox(minimum=0, maximum=100, suffix=" %")
+        self._strength_slider = slider(0, 100)
+        self.row("Strength", self.strength)
+        self.column.addWidget(self._strength_slider)
+        self.exact = QCheckBox("Hit the curve exactly")
+        self.exact.setToolTip("Plausible, the default, keeps the face believable; exact goes where you drag it.")
+        self.column.addWidget(self.exact)
+        for widget in (self.radius, self._radius_slider):
+            widget.valueChanged.connect(self._set_radius)
+        for widget in (self.strength, self._strength_slider):
+            widget.valueChanged.connect(self._set_strength)
+        self.exact.toggled.connect(self._set_exact)
+        session.changed.connect(self._on_change)
+        self._show()
+
+    def _set_radius(self, frames: int) -> None:
+        self.session.set_brush(radius_frames=frames)
+
+    def _set_strength(self, percent: int) -> None:
+        self.session.set_brush(strength=percent / 100)
+
+    def _set_exact(self, on: bool) -> None:
+        self.session.set_brush(exact=on)
+
+    def _on_change(self, change: Change) -> None:
+        if change & (Change.TAKE | Change.TOOL):
+            self._show()
+
+    def _show(self) -> None:
+        radius, percent = self.session.radius_frames, round(100 * self.session.strength)
+        for widget, value in (
+            (self.radius, radius),
+            (self._radius_slider, radius),
+            (self.strength, percent),
+            (self._strength_slider, percent),
+        ):
+            with QSignalBlocker(widget):
+                widget.setValue(value)
+        with QSignalBlocker(self.exact):
+            self.exact.setChecked(self.session.exact)

@@ -1,0 +1,1 @@
+"""Pins: a pose required exactly at a frame, spread over a range."""

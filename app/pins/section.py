@@ -1,0 +1,167 @@
+"""The Pin tool's settings: the pose at the playhead by weights, and how far it spreads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QSignalBlocker, Qt
+from PySide6.QtWidgets import QGridLayout, QLabel, QLineEdit, QPushButton, QSlider, QSpinBox, QWidget
+
+from app.inference import Inference
+from app.section import Section, quiet, slider
+from app.session import Change, Session
+from engine.project import Pin
+from engine.take import SHAPE_INDEX, SHAPES
+
+if TYPE_CHECKING:
+    from engine.editing import Dragger, Patch
+    from engine.spacetime.pin import PinSolver
+
+STEPS = 200  # of a weight's slider
+SHOWN = 12
+SPREAD_S = 0.5
+
+
+class PinsSection(Section):
+    """Sliders for the pose at the playhead; while one moves, the change spreads over the range.
+
+    Parameters
+    ----------
+    session : whose take is pinned
+    inference : carries the solving out
+    """
+
+    tools = frozenset({"pin"})
+
+    def __init__(self, session: Session, inference: Inference) -> None:
+        super().__init__(session, "Pin")
+        self._inference = inference
+        self._frame = 0
+        self._pose: dict[str, float] = {}  # the weights that were moved
+        self._solver: PinSolver | None = None
+        self._solver_for: tuple[object, ...] = ()
+        self.before, self.after = QSpinBox(), QSpinBox()
+        for box in (self.before, self.after):
+            box.setRange(0, 5000)
+            box.setSuffix(" frames")
+            box.valueChanged.connect(self._spread)
+        self.row("Eases in over", self.before)
+        self.row("Eases out over", self.after)
+        self.search = QLineEdit()
+        self.search.setPlaceholderText("Search shapes…")
+        self.search.setClearButtonEnabled(True)
+        self.search.textChanged.connect(self._show_sliders)
+        self.column.addWidget(self.search)
+        self._grid_box = QWidget()
+        self._grid = QGridLayout(self._grid_box)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid.setVerticalSpacing(2)
+        self._grid.setColumnStretch(0, 1)
+        self.column.addWidget(self._grid_box)
+        self.sliders: dict[str, QSlider] = {}
+        self._values: dict[str, QLabel] = {}
+        self.keep_button, self.drop_button = QPushButton("Pin"), QPushButton("Drop")
+        self.keep_button.setProperty("primary", True)
+        self.keep_button.setToolTip("Keep the pose and the pin")
+        self.side_by_side(self.keep_button, self.drop_button)
+        self.keep_button.clicked.connect(self.keep)
+        self.drop_button.clicked.connect(self.drop)
+        self._hint = quiet("Move a slider: the pose is met at the playhead and eases out over the range.")
+        self.column.addWidget(self._hint)
+        session.changed.connect(self._on_change)
+        self._reset_range()
+        self._show_sliders()
+
+    @property
+    def range(self) -> tuple[int, int]:
+        """The half-open range that the pin spreads over."""
+        return max(0, self._frame - self.before.value()), min(
+            len(self.session.take), self._frame + self.after.value() + 1
+        )
+
+    def keep(self) -> None:
+        """Keep the pose as one undo step, and the pin with it."""
+        if not self._pose or not self._inference.busy:
+            return
+        session, (start, stop) = self.session, self.range
+        pin = Pin(self._frame, dict(self._pose), start, stop)
+        names = ", ".join(list(self._pose)[:2])
+        others = tuple(other for other in session.marks.pins if other.frame != pin.frame)
+        pins = tuple(sorted((*others, pin), key=lambda each: each.frame))
+        inputs = {"frame": self._frame, "weights": dict(self._pose), "range": [start, stop]}
+        self._pose = {}
+        self._inference.finish(f"pin {names}", kind="pin", inputs=inputs, marks=replace(session.marks, pins=pins))
+
+    def drop(self) -> None:
+        """Let the pose spring back."""
+        self._pose = {}
+        self._inference.cancel()
+        self._show_sliders()
+
+    def _on_change(self, change: Change) -> None:
+        if change & Change.TAKE:
+            self._reset_range()
+        if change & (Change.TAKE | Change.PLAYHEAD | Change.CURVES | Change.TOOL) and self.session.tool == "pin":
+            if change & (Change.PLAYHEAD | Change.TAKE) and self._pose:
+                self.drop()
+            self._frame = self.session.playhead
+            self._show_sliders()
+
+    def _reset_range(self) -> None:
+        reach = round(SPREAD_S * self.session.take.fps)
+        for box in (self.before, self.after):
+            with QSignalBlocker(box):
+                box.setValue(reach)
+
+    def _show_sliders(self) -> None:
+        """Show the shapes that match the search, or else those most active around the playhead."""
+        while (item := self._grid.takeAt(0)) is not None:
+            if (old := item.widget()) is not None:
+                old.hide()
+                old.deleteLater()
+        self.sliders, self._values = {}, {}
+        self._frame = self.session.playhead
+        for row, name in enumerate(self._listed()):
+            value = self._pose.get(name, float(self.session.take.weights[self._frame, SHAPE_INDEX[name]]))
+            label, number, bar = quiet(name), QLabel(f"{value:.2f}"), slider(0, STEPS)
+            label.setWordWrap(False)
+            number.setAlignment(Qt.AlignmentFlag.AlignRight)
+            bar.setValue(round(value * STEPS))
+            bar.setAccessibleName(name)
+            bar.valueChanged.connect(lambda at, name=name: self._move(name, at / STEPS))
+            self._grid.addWidget(label, 2 * row, 0)
+            self._grid.addWidget(number, 2 * row, 1)
+            self._grid.addWidget(bar, 2 * row + 1, 0, 1, 2)
+            self.sliders[name], self._values[name] = bar, number
+
+    def _listed(self) -> list[str]:
+        wanted = self.search.text().strip().lower()
+        if wanted:
+            return [name for name in SHAPES if wanted in name.lower()][:SHOWN]
+        start, stop = self.range
+        active = np.ptp(self.session.take.weights[start:stop], axis=0) + self.session.take.weights[self._frame]
+        moved = list(self._pose)
+        return moved + [SHAPES[i] for i in np.argsort(-active) if SHAPES[i] not in moved][: SHOWN - len(moved)]
+
+    def _move(self, name: str, value: float) -> None:
+        self._pose[name] = value
+        self._values[name].setText(f"{value:.2f}")
+        self._spread()
+
+    def _spread(self, *_: int) -> None:
+        if not self._pose:
+            return
+        frame, frames, pose = self._frame, self.range, dict(self._pose)
+
+        def verb(dragger: Dragger) -> Patch:
+            from engine.editing import Patch
+            from engine.spacetime.pin import PinSolver
+
+            wanted = (dragger.take, frame, frames)
+            if self._solver is None or self._solver_for != wanted:
+                self._solver, self._solver_for = PinSolver(dragger.take, {frame: pose}, frames), wanted
+            return Patch.between(dragger.take, self._solver.take({frame: pose}), frames)
+
+        self._inference.run(verb)

@@ -1,0 +1,69 @@
+"""The pieces that the panel at the right is made of, and the small widgets they share."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
+
+from app.session import Session
+from app.theme import GRID
+
+
+class Section(QWidget):
+    """A titled group of settings.
+
+    Attributes
+    ----------
+    tools : the tools it is shown with; empty for always
+    """
+
+    tools: frozenset[str] = frozenset()
+
+    def __init__(self, session: Session, title: str) -> None:
+        super().__init__()
+        self.session = session
+        self.column = QVBoxLayout(self)
+        self.column.setContentsMargins(0, 0, 0, GRID)
+        self.column.setSpacing(GRID - 2)
+        self.title = heading(title)
+        self.column.addWidget(self.title)
+
+    def row(self, title: str, widget: QWidget) -> None:
+        """Add a widget with its name at its left."""
+        row = QHBoxLayout()
+        label = quiet(title)
+        label.setBuddy(widget)
+        row.addWidget(label, 1)
+        row.addWidget(widget)
+        self.column.addLayout(row)
+        widget.setAccessibleName(title)
+
+    def side_by_side(self, *widgets: QWidget) -> None:
+        """Add widgets in one row."""
+        row = QHBoxLayout()
+        row.setSpacing(GRID)
+        for widget in widgets:
+            row.addWidget(widget)
+        self.column.addLayout(row)
+
+
+def heading(text: str) -> QLabel:
+    """Return a title."""
+    label = QLabel(text)
+    label.setProperty("heading", True)
+    return label
+
+
+def quiet(text: str) -> QLabel:
+    """Return a label in the quiet colour that wraps."""
+    label = QLabel(text)
+    label.setProperty("quiet", True)
+    label.setWordWrap(True)
+    return label
+
+
+def slider(lowest: int, highest: int) -> QSlider:
+    """Return a horizontal slider."""
+    made = QSlider(Qt.Orientation.Horizontal)
+    made.setRange(lowest, highest)
+    return made

@@ -1,0 +1,1 @@
+"""Spans: marking frames for work, and filling them."""

@@ -1,0 +1,197 @@
+"""The spans of the take, and how the chosen one is filled."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QCheckBox, QComboBox, QFileDialog, QPushButton, QVBoxLayout, QWidget
+
+from app.commands import MarkCommand
+from app.section import Section, quiet
+from app.session import Change, Session
+from app.spans.filling import Filling
+from app.spans.strip import Strip
+from engine.errors import EngineError
+from engine.formats import read_take
+from engine.project import Span
+from engine.take import Take, timecode
+
+SHOWN_SPANS = 8
+REGIONS = {
+    "whole face": "face",
+    "lower face": "lower",
+    "upper face": "upper",
+    "eyes": "eyes",
+    "left side": "left",
+    "right side": "right",
+}
+STYLES = {"as fits the length": "auto", "a performance": "perform", "a smooth bridge": "bridge"}
+
+
+class SpansSection(Section):
+    """Lists spans; the chosen one can be given a region, filled, or removed.
+
+    Parameters
+    ----------
+    session : whose spans are shown
+    filling : makes the variants
+    """
+
+    refused = Signal(str, str)
+
+    def __init__(self, session: Session, filling: Filling) -> None:
+        super().__init__(session, "Spans")
+        self._filling = filling
+        self._guide: Take | None = None
+        self._list = QVBoxLayout()
+        self._list.setSpacing(4)
+        self.column.addLayout(self._list)
+        self._chosen_box = QWidget()
+        self._lay_out_chosen()
+        self.column.addWidget(self._chosen_box)
+        self.strip = Strip()
+        self.strip.chosen.connect(filling.choose)
+        self.column.addWidget(self.strip)
+        self.accept_button, self.again_button, self.drop_button = (
+            QPushButton("Keep"),
+            QPushButton("Others"),
+            QPushButton("Drop"),
+        )
+        self.accept_button.setProperty("primary", True)
+        self.accept_button.setToolTip("Keep this variant (Enter)")
+        self.again_button.setToolTip("Make six others")
+        self.accept_button.clicked.connect(filling.accept)
+        self.again_button.clicked.connect(filling.again)
+        self.drop_button.clicked.connect(filling.drop)
+        self.side_by_side(self.accept_button, self.again_button, self.drop_button)
+        filling.changed.connect(self._show)
+        session.changed.connect(self._on_change)
+        self._show_list()
+        self._show()
+
+    def _lay_out_chosen(self) -> None:
+        box = QVBoxLayout(self._chosen_box)
+        box.setContentsMargins(0, 0, 0, 0)
+        self.region = QComboBox()
+        self.region.addItems(list(REGIONS))
+        self.region.setAccessibleName("Region")
+        self.region.setToolTip("Which part of the face is filled; the rest stays as it is.")
+        self.style_box = QComboBox()
+        self.style_box.addItems(list(STYLES))
+        self.style_box.setAccessibleName("Fill with")
+        self.curves = QCheckBox("Follow my curves")
+        self.curves.setToolTip("Let the fill follow what you dragged or drew inside the span.")
+        self.guide_button = QPushButton("Guide by a take…")
+        self.guide_button.setToolTip("Another take of the same rate, such as a rough one from a webcam.")
+        self.fill_button, self.remove_button = QPushButton("Fill"), QPushButton("Unmark")
+        self.fill_button.setProperty("primary", True)
+        self.fill_button.setToolTip("Fill the chosen span (F)")
+        self.note = quiet("")
+        for widget in (
+            self.region,
+            self.style_box,
+            self.curves,
+            self.guide_button,
+            self.fill_button,
+            self.remove_button,
+            self.note,
+        ):
+            box.addWidget(widget)
+        self.region.activated.connect(self._set_region)
+        self.guide_button.clicked.connect(self._choose_guide)
+        self.fill_button.clicked.connect(self.fill)
+        self.remove_button.clicked.connect(self.unmark)
+
+    @property
+    def chosen(self) -> Span | None:
+        """The span that is selected, if any."""
+        for span in self.session.marks.spans:
+            if (span.start, span.stop) == self.session.selection:
+                return span
+        return None
+
+    def mark(self) -> None:
+        """Make the selection a span."""
+        selection, marks = self.session.selection, self.session.marks
+        if selection is None or self.chosen is not None:
+            return
+        spans = sorted((*marks.spans, Span(*selection)), key=lambda span: span.start)
+        self.session.undo.push(MarkCommand(self.session, replace(marks, spans=tuple(spans)), "mark a span"))
+
+    def unmark(self) -> None:
+        """Remove the chosen span; its frames stay as they are."""
+        chosen, marks = self.chosen, self.session.marks
+        if chosen is not None:
+            rest = tuple(span for span in marks.spans if span != chosen)
+            self.session.undo.push(MarkCommand(self.session, replace(marks, spans=rest), "unmark a span"))
+
+    def fill(self) -> None:
+        """Fill the chosen span, or the selection."""
+        span = self.chosen or (Span(*self.session.selection) if self.session.selection else None)
+        if span is None:
+            self.refused.emit("No span is chosen.", "Click one in the spans lane, or drag there to mark one.")
+            return
+        style = STYLES[self.style_box.currentText()]
+        self._filling.start(span, style=style, guide=self._guide, keep_curves=self.curves.isChecked())
+
+    def _set_region(self, _: int) -> None:
+        chosen, marks = self.chosen, self.session.marks
+        if chosen is not None:
+            changed = replace(chosen, region=REGIONS[self.region.currentText()])
+            spans = tuple(changed if span == chosen else span for span in marks.spans)
+            self.session.undo.push(MarkCommand(self.session, replace(marks, spans=spans), "choose a region"))
+
+    def _choose_guide(self) -> None:
+        name, _ = QFileDialog.getOpenFileName(self, "A take to follow", "", "Takes (*.csv)")
+        try:
+            self._guide = read_take(Path(name)) if name else None
+        except EngineError as error:
+            self.refused.emit(error.sentence, error.advice)
+        self.guide_button.setText(f"Guide: {self._guide.name}" if self._guide else "Guide by a take…")
+
+    def _on_change(self, change: Change) -> None:
+        if change & (Change.TAKE | Change.MARKS | Change.SELECTION):
+            self._show_list()
+            self._show()
+
+    def _show_list(self) -> None:
+        while (item := self._list.takeAt(0)) is not None:
+            if (old := item.widget()) is not None:
+                old.hide()
+                old.deleteLater()
+        spans, fps, chosen = self.session.marks.spans, self.session.take.fps, self.chosen
+        for span in spans[:SHOWN_SPANS]:
+            kind = "lost" if span.kind == "lost" else "marked"
+            button = QPushButton(f"{timecode(span.start / fps, fps)}  {kind} · {span.stop - span.start} frames")
+            button.setCheckable(True)
+            button.setChecked(span == chosen)
+            button.setToolTip("Go to this span and choose it")
+            button.clicked.connect(lambda _=False, span=span: self._go_to(span))
+            self._list.addWidget(button)
+        if len(spans) > SHOWN_SPANS:
+            self._list.addWidget(quiet(f"and {len(spans) - SHOWN_SPANS} more"))
+        if not spans:
+            self._list.addWidget(quiet("None. Drag in the spans lane to mark one."))
+
+    def _go_to(self, span: Span) -> None:
+        self.session.select((span.start, span.stop))
+        self.session.move_playhead(span.start)
+
+    def _show(self) -> None:
+        chosen, filling = self.chosen, self._filling
+        self._chosen_box.setVisible(chosen is not None and not filling.variants)
+        made = bool(filling.variants)
+        for widget in (self.strip, self.accept_button, self.again_button, self.drop_button):
+            widget.setVisible(made)
+        self.strip.show_variants(filling.variants, filling.chosen)
+        self.fill_button.setText("Filling…" if filling.busy else "Fill")
+        self.fill_button.setEnabled(not filling.busy)
+        if chosen is not None:
+            names = {region: title for title, region in REGIONS.items()}
+            with QSignalBlocker(self.region):
+                self.region.setCurrentText(names[chosen.region])
+            pins = sum(chosen.start <= pin.frame < chosen.stop for pin in self.session.marks.pins)
+            self.note.setText(f"{pins} pin{'s' * (pins != 1)} inside will be met exactly." if pins else "")
+            self.note.setVisible(bool(pins))

@@ -1,0 +1,125 @@
+"""The actions that move through time and the view; none changes the take."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QObject
+
+from app.session import Session
+from app.spans.filling import Filling
+from app.transport import Transport
+
+
+class TimeActions(QObject):
+    """Each method is an action of the table.
+
+    Parameters
+    ----------
+    session, transport, filling : what they work on; while a fill is chosen, the arrows go through its variants
+    """
+
+    def __init__(self, session: Session, transport: Transport, filling: Filling) -> None:
+        super().__init__()
+        self._session, self._transport, self._filling = session, transport, filling
+        self.looping: Callable[[], bool] = lambda: False
+
+    def play(self) -> None:
+        """Play or pause."""
+        self._transport.toggle()
+
+    def play_forwards(self) -> None:
+        """Play forwards, faster each time."""
+        self._transport.faster(1)
+
+    def play_backwards(self) -> None:
+        """Play backwards, faster each time."""
+        self._transport.faster(-1)
+
+    def stop(self) -> None:
+        """Stand still."""
+        self._transport.run(0.0)
+
+    def loop(self) -> None:
+        """Begin again at the end, or stop there."""
+        self._transport.set_loop(self.looping())
+
+    def next_frame(self) -> None:
+        """Go one frame on, or to the next variant."""
+        if self._filling.variants:
+            self._filling.choose(self._filling.chosen + 1)
+        else:
+            self._session.move_playhead(self._session.playhead + 1)
+
+    def previous_frame(self) -> None:
+        """Go one frame back, or to the variant before."""
+        if self._filling.variants:
+            self._filling.choose(self._filling.chosen - 1)
+        else:
+            self._session.move_playhead(self._session.playhead - 1)
+
+    def first_frame(self) -> None:
+        """Go to the beginning."""
+        self._session.move_playhead(0)
+
+    def last_frame(self) -> None:
+        """Go to the end."""
+        self._session.move_playhead(len(self._session.take) - 1)
+
+    def next_span(self) -> None:
+        """Go to the next span and choose it."""
+        later = [span for span in self._session.marks.spans if span.start > self._session.playhead]
+        if later:
+            self._session.select((later[0].start, later[0].stop))
+            self._session.move_playhead(later[0].start)
+
+    def previous_span(self) -> None:
+        """Go to the span before and choose it."""
+        earlier = [span for span in self._session.marks.spans if span.start < self._session.playhead]
+        if earlier:
+            self._session.select((earlier[-1].start, earlier[-1].stop))
+            self._session.move_playhead(earlier[-1].start)
+
+    def set_in(self) -> None:
+        """Let the selection begin at the playhead."""
+        _, stop = self._session.selection or (0, len(self._session.take))
+        self._session.select((self._session.playhead, max(stop, self._session.playhead + 1)))
+
+    def set_out(self) -> None:
+        """Let the selection end at the playhead."""
+        start, _ = self._session.selection or (0, 0)
+        self._session.select((min(start, self._session.playhead), self._session.playhead + 1))
+
+    def clear_selection(self) -> None:
+        """Select nothing."""
+        self._session.select(None)
+
+    def frame_all(self) -> None:
+        """Show the whole take."""
+        self._session.set_view(0.0, len(self._session.take) - 1.0)
+
+    def zoom_in(self) -> None:
+        """Show fewer frames around the playhead."""
+        self._session.zoom_view(1.5, self._session.playhead)
+
+    def zoom_out(self) -> None:
+        """Show more frames around the playhead."""
+        self._session.zoom_view(1 / 1.5, self._session.playhead)
+
+    def next_lane(self) -> None:
+        """Work on the next curve."""
+        self._step_lane(1)
+
+    def previous_lane(self) -> None:
+        """Work on the curve before."""
+        self._step_lane(-1)
+
+    def _step_lane(self, by: int) -> None:
+        lanes = self._session.lanes
+        at = lanes.index(self._session.lane) + by
+        if 0 <= at < len(lanes):
+            self._session.choose_lane(lanes[at])
+
+    def expand_lane(self) -> None:
+        """Show the weights under the active control, or put them away."""
+        self._session.expand(self._session.lane)

@@ -1,0 +1,261 @@
+"""Training the cleaning network on performances that a simulated tracker has spoilt (BSS20b section 3.2)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import torch
+from torch import Tensor
+
+from engine.clean.distances import Distances
+from engine.clean.material import CHANGING, cubic
+from engine.clean.network import CleanConfig, CleanNetwork, State, config_of, run
+from engine.corpus import Piece, split
+from engine.errors import EngineError
+from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.performance.augment import LOWER, Levers, augment
+from engine.performance.corpus import synthetic_performances
+from engine.performance.degrade import Faults, changing_times, degrade, scaled
+from engine.take import MODEL_FPS, Array
+
+Report = Callable[[str], None]
+RATES_FPS = (24.0, 30.0, 60.0, 120.0, CHANGING)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a training run depends on; the paper's values unless its place says otherwise."""
+
+    seed: int = 0
+    epochs: int = 40  # the learning rate falls to nothing by the last
+    batches: int = 4  # to an epoch; every batch is spoilt anew
+    chunk: int = 200
+    first_chunk: int = 50  # for the first two thirds of the epochs: four times the steps, with a short memory
+    chunks: int = 4  # consecutive chunks of one stream, the state handed on: a live stream does not begin anew
+    streams: int = 64
+    rate: float = 1e-3
+    dropout: float = 0.0  # the paper's is 0.3; here every batch is spoilt anew, which keeps from overfitting too
+    derivative_share: float = 0.0003  # per (weight / s)^2; at the paper's 0.01 it outweighs the error ten times
+    distance_share: float = 0.004  # per cm; the paper's 0.1 would drown the rest
+    input_distance_share: float = 0.8
+    synthetic_minutes: float = 8.0
+    lost_share: float = 0.25  # of the loss on lost frames, whose luck would otherwise drown what can be learnt
+    ridge: float = 1e-3
+    mouth_share: float = 0.3  # weight of takes that animate the mouth alone
+    strengths: tuple[float, float] = (0.2, 1.4)
+    faults: Faults = field(default_factory=Faults)
+    levers: Levers = field(default_factory=lambda: Levers(copies=4))
+
+
+class Batch(NamedTuple):
+    """Spoilt streams and what they were: (streams, frames, 52), (streams, frames, 1) each for present and step_s."""
+
+    truth: Tensor
+    seen: Tensor
+    present: Tensor
+    step_s: Tensor
+
+
+def stream(piece: Array, fps: float, frames: int, rng: np.random.Generator) -> tuple[Array, Array]:
+    """Return weights, (frames, 52), and times of a random stretch of a piece at a rate; short pieces run to and fro."""
+    fastest = 120.0
+    times = np.arange(frames) / fps if fps else changing_times(frames / 24.0, rng)[:frames]
+    times = times if len(times) == frames else np.arange(frames) / fastest
+    there_and_back = np.concatenate([piece, piece[::-1]])
+    at = (times * MODEL_FPS + rng.uniform(0, len(there_and_back))) % (len(there_and_back) - 1)
+    return np.clip(cubic(there_and_back, at), 0.0, 1.0), times
+
+
+def make_batch(pieces: list[Array], settings: Settings, rng: np.random.Generator) -> Batch:
+    """Draw pieces in proportion to their length, each at a random rate and strength of faults.
+
+    Pieces that animate the mouth alone count less: most of a face's shapes have nothing to learn from them.
+    """
+    whole = np.array([piece[:, ~LOWER].any() for piece in pieces])
+    lengths = np.array([len(piece) for piece in pieces]) * np.where(whole, 1.0, settings.mouth_share)
+    frames = settings.chunk * settings.chunks
+    columns: list[tuple[npt.NDArray[Any], ...]] = []
+    for index in rng.choice(len(pieces), settings.streams, p=lengths / lengths.sum()):
+        truth, times = stream(pieces[index], RATES_FPS[int(rng.integers(len(RATES_FPS)))], frames, rng)
+        tracked = degrade(truth, times, scaled(settings.faults, rng.uniform(*settings.strengths)), rng)
+        steps = np.diff(times, prepend=2 * times[0] - times[1])
+        columns.append((truth, tracked.weights, 1.0 - tracked.lost[:, None], steps[:, None]))
+    return Batch(*(torch.tensor(np.stack(column), dtype=torch.float32) for column in zip(*columns, strict=True)))
+
+
+def losses(made: Tensor, batch: Batch, before: Tensor, distances: Distances, settings: Settings) -> dict[str, Tensor]:
+    """Return every term by name: weights, their derivative, distances to the truth and to the tracker's.
+
+    `made` is (streams, frames, 52) and `before` the difference from the truth on the frame before, (streams, 1, 52).
+    """
+    share = batch.present + settings.lost_share * (1 - batch.present)
+    error = (made - batch.truth) * share.sqrt()
+    slope = torch.diff(error, dim=1, prepend=before) / batch.step_s
+    truth, tracked, estimate = (distances(weights) for weights in (batch.truth, batch.seen, made))
+    pull = ((tracked - estimate).abs() * batch.present).mean()
+    return {
+        "mse": error.square().mean(),
+        "derivative": settings.derivative_share * slope.square().mean(),
+        "distance": settings.distance_share * ((truth - estimate).abs() * share).mean(),
+        "input_distance": settings.distance_share * settings.input_distance_share * pull,
+    }
+
+
+class Trainer:
+    """The training loop: streams of several chunks, one step of Adam a chunk."""
+
+    def __init__(self, training: list[Array], validation: list[Array], settings: Settings, partial: Path) -> None:
+        torch.manual_seed(settings.seed)
+        self._settings, self._training, self._partial = settings, training, partial
+        self._rng = np.random.default_rng(settings.seed)
+        self._distances = Distances()
+        self._valid = make_batch(validation, settings, np.random.default_rng(1))
+        self.network = CleanNetwork(CleanConfig())
+        self._optimizer = torch.optim.Adam(self.network.parameters(), lr=settings.rate)
+        self._start_as_ridge()
+        self._epoch = 0
+        self._resume()
+
+    def _start_as_ridge(self) -> None:
+        """Begin the restoring map as the ridge regression of what the tracker took away on what it shows."""
+        batch = make_batch(self._training, self._settings, self._rng)
+        kept = batch.present[..., 0] > 0
+        seen, missing = batch.seen[kept], (batch.truth - batch.seen)[kept]
+        centre, gap = seen.mean(dim=0), missing.mean(dim=0)
+        x = seen - centre
+        gram = x.T @ x / len(x) + self._settings.ridge * torch.eye(x.shape[1])
+        slope = torch.linalg.solve(gram, x.T @ (missing - gap) / len(x)).T
+        with torch.no_grad():
+            self.network.restore.weight.copy_(slope)
+            self.network.restore.bias.copy_(gap - slope @ centre)
+
+    def run(self, report: Report) -> dict[str, float]:
+        """Train for the settings' epochs; returns validation terms of the best state, which the network then holds."""
+        settings, began = self._settings, time.monotonic()
+        best, best_state = self.validate(), self._copy()
+        for epoch in range(self._epoch, settings.epochs):
+            share = epoch / settings.epochs
+            for group in self._optimizer.param_groups:
+                group["lr"] = settings.rate * (0.5 + 0.5 * np.cos(np.pi * share)) * min(1.0, 0.3 + epoch / 4)
+            chunk = settings.first_chunk if share < 2 / 3 else settings.chunk
+            learnt = [
+                self._learn(make_batch(self._training, settings, self._rng), chunk) for _ in range(settings.batches)
+            ]
+            terms = self.validate() | {"training_mse": float(np.mean(learnt))}
+            if terms["mse"] < best["mse"]:
+                best, best_state = terms, self._copy()
+            self._save(epoch + 1)
+            shown = ", ".join(f"{name} {value:.6f}" for name, value in terms.items())
+            report(f"clean {epoch + 1}/{settings.epochs}: {shown} ({time.monotonic() - began:.0f} s)")
+        self.network.load_state_dict(best_state)
+        return best
+
+    def _learn(self, batch: Batch, length: int) -> float:
+        """Take one step of Adam for each chunk; returns the mean squared error on the way."""
+        mse = 0.0
+        state = self.network.start(batch.seen[:, 0])
+        before = torch.zeros_like(batch.truth[:, :1])
+        for chunk in _chunks(batch, length):
+            made, state = self._forward(chunk, state)
+            terms = losses(made, chunk, before, self._distances, self._settings)
+            loss = torch.stack(list(terms.values())).sum()
+            self._optimizer.zero_grad()
+            loss.backward()  # type: ignore[no-untyped-call]
+            torch.nn.utils.clip_grad_norm_(self.network.parameters(), 0.5)
+            self._optimizer.step()
+            state, before = state.detached(), (made - chunk.truth)[:, -1:].detach()
+            mse += float(terms["mse"].detach()) * length / batch.truth.shape[1]
+        return mse
+
+    def _forward(self, chunk: Batch, state: State) -> tuple[Tensor, State]:
+        return run(self.network, chunk.seen, chunk.present, chunk.step_s, state, dropout=self._settings.dropout)
+
+    def validate(self) -> dict[str, float]:
+        """Return the loss terms on validation takes, always spoilt alike, and the mean squared error of the input."""
+        batch = self._valid
+        with torch.inference_mode():
+            made, _ = run(self.network, batch.seen, batch.present, batch.step_s, self.network.start(batch.seen[:, 0]))
+            before = torch.zeros_like(batch.truth[:, :1])
+            terms = losses(made, batch, before, self._distances, self._settings)
+            terms["mse"] = (made - batch.truth).square().mean()
+            terms["raw_mse"] = (batch.seen - batch.truth).square().mean()
+            kept = batch.present
+            for name, curves in (("seen_mse", made), ("raw_seen_mse", batch.seen)):
+                terms[name] = ((curves - batch.truth).square() * kept).sum() / kept.sum() / curves.shape[2]
+        return {name: float(value) for name, value in terms.items()}
+
+    def _copy(self) -> dict[str, Tensor]:
+        return {name: value.clone() for name, value in self.network.state_dict().items()}
+
+    def _save(self, epoch: int) -> None:
+        save_model(self._partial, self._copy(), kind="clean", config=config_of(self.network) | {"epoch": epoch})
+
+    def _resume(self) -> None:
+        """Go on where a run that was stopped left off; Adam's averages are regained within an epoch."""
+        if self._partial.exists():
+            tensors, config = load_model(self._partial, kind="clean")
+            self.network.load_state_dict(tensors)
+            self._epoch = int(config["epoch"])
+
+
+def _chunks(batch: Batch, length: int) -> list[Batch]:
+    cut = [torch.split(part, length, dim=1) for part in batch]
+    return [Batch(*parts) for parts in zip(*cut, strict=True)]
+
+
+def training_pieces(pieces: list[Piece], settings: Settings) -> list[Array]:
+    """Return augmented recorded pieces and synthetic performances."""
+    rng = np.random.default_rng(settings.seed)
+    real = augment([piece.weights for piece in pieces], settings.levers, rng)
+    return real + synthetic_performances(settings.synthetic_minutes, seed=settings.seed)
+
+
+def train(data: Path, out: Path = MODELS, settings: Settings | None = None, report: Report = print) -> dict[str, Any]:
+    """Train on the training split; writes the model and its card, returns the validation figures.
+
+    Stopped by Ctrl+C, it goes on from the last epoch when run again. The methods that cleaning is compared with are
+    tuned at the end, where scikit-learn is installed.
+    """
+    settings = settings or Settings()
+    torch.set_num_threads(1)  # the steps are small: a second thread waits more than it works
+    training, validation, _ = split(data)
+    partial = out / "clean.partial.safetensors"
+    trainer = Trainer(training_pieces(training, settings), [piece.weights for piece in validation], settings, partial)
+    figures = trainer.run(report)
+    path = out / "clean.safetensors"
+    save_model(path, trainer.network.state_dict(), kind="clean", config=config_of(trainer.network))
+    save_card(path, _card(training, settings, figures))
+    partial.unlink(missing_ok=True)
+    _train_rivals(data, out, report)
+    return figures
+
+
+def _train_rivals(data: Path, out: Path, report: Report) -> None:
+    from engine.clean.tuning import train_rivals  # it learns from this module's batches
+
+    try:
+        train_rivals(data, out, report=report)
+    except EngineError as missing:
+        report(f"The rivals stay as they are. {missing}")
+
+
+def _card(training: list[Piece], settings: Settings, metrics: dict[str, float]) -> Card:
+    seconds: dict[str, float] = {}
+    for piece in training:
+        seconds[piece.source] = round(seconds.get(piece.source, 0.0) + len(piece.weights) / MODEL_FPS, 1)
+    return Card(
+        kind="clean",
+        data={"recorded_seconds": seconds, "synthetic_minutes": settings.synthetic_minutes},
+        split="train; best state by the last 15 % of each training take; test takes never seen",
+        seed=settings.seed,
+        commit=commit(),
+        settings=asdict(settings),
+        metrics={"validation": metrics},
+        notes="Trained against simulated tracker faults; those of another tracker may differ.",
+    )

@@ -1,0 +1,28 @@
+"""Characters from other programs: glTF with morph targets, a folder of OBJ files, ICT-FaceKit; and our own file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from engine.errors import FormatError
+from engine.formats.characters.raw import RawCharacter
+
+KNOWN = "Retake imports glTF and GLB, folders of OBJ files, and ICT-FaceKit."
+
+
+def read(path: Path) -> RawCharacter:
+    """Read a character's mesh and shapes from any supported file or folder; raises `FormatError`."""
+    from engine.formats.characters import gltf, ict, obj
+
+    if not path.exists():
+        raise FormatError(f"{path.name} is not there.", KNOWN)
+    if path.is_dir():
+        return obj.read(path)
+    ending = path.suffix.lower()
+    if ending in (".gltf", ".glb"):
+        return gltf.read(path)
+    if ending == ".obj":
+        return obj.read_mesh(path)
+    if ending == ".npz" and ict.is_ict(path):
+        return ict.read(path)
+    raise FormatError(f"{path.name} is not a kind of file that a character can be in.", KNOWN)

@@ -1,0 +1,100 @@
+"""A folder of OBJ files: the neutral face and one file for each shape, all with the same vertices in the same order."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.errors import FormatError
+from engine.formats.characters.names import match_names, plain
+from engine.formats.characters.raw import MAX_SHAPES, MAX_VERTICES, RawCharacter, check
+from engine.take import Array
+
+MAX_BYTES = 512 << 20
+NEUTRAL_WORDS = ("neutral", "basis", "base", "rest")
+
+
+def read(folder: Path) -> RawCharacter:
+    """Read every OBJ file of a folder as one character; raises `FormatError` that names the file at fault."""
+    paths = sorted(path for path in folder.iterdir() if path.suffix.lower() == ".obj" and path.is_file())
+    if not paths:
+        raise FormatError(f"{folder.name} holds no OBJ file.", "Choose the folder with one OBJ file for each shape.")
+    if len(paths) > MAX_SHAPES:
+        raise FormatError(f"{folder.name} holds {len(paths)} OBJ files; a character has at most {MAX_SHAPES}.")
+    neutral_path = _neutral(paths, folder)
+    vertices, faces = read_obj(neutral_path)
+    shapes = {}
+    for path in paths:
+        if path != neutral_path:
+            posed, _ = read_obj(path, with_faces=False)
+            if len(posed) != len(vertices):
+                raise FormatError(f"{path.name} has {len(posed)} vertices, {neutral_path.name} has {len(vertices)}.")
+            shapes[path.stem] = (posed - vertices).astype(np.float32)
+    return check(RawCharacter(folder.name, vertices, faces, shapes))
+
+
+def read_mesh(path: Path) -> RawCharacter:
+    """Read one OBJ file as a mesh without shapes."""
+    vertices, faces = read_obj(path)
+    return check(RawCharacter(path.stem, vertices, faces, {}))
+
+
+def _neutral(paths: list[Path], folder: Path) -> Path:
+    named = [path for path in paths if any(word in plain(path.stem) for word in NEUTRAL_WORDS)]
+    if len(named) == 1:
+        return named[0]
+    rows = match_names(path.stem for path in paths)
+    left = [path for path, row in zip(paths, rows, strict=True) if not row.shape]
+    if not named and len(left) == 1:
+        return left[0]
+    found = f"could be any of {', '.join(path.name for path in (named or left)[:4])}" if named or left else "is missing"
+    raise FormatError(f"The neutral face in {folder.name} {found}.", "Give it a name that contains 'neutral'.")
+
+
+def read_obj(path: Path, *, with_faces: bool = True) -> tuple[Array, npt.NDArray[np.int32]]:
+    """Return vertices (n, 3) and triangles (t, 3); larger polygons become fans. Raises `FormatError` with the line."""
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise FormatError(f"{path.name} is larger than {MAX_BYTES >> 20} MB.")
+        lines = path.read_bytes().split(b"\n")
+    except OSError as error:
+        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+    places = [number for number, line in enumerate(lines) if line[:2] in (b"v ", b"v\t")]
+    if not places:
+        raise FormatError(f"{path.name} holds no vertices.", "Is it an OBJ file?")
+    if len(places) > MAX_VERTICES:
+        raise FormatError(f"{path.name} has {len(places)} vertices; a character has at most {MAX_VERTICES}.")
+    vertices = np.array([_vertex(lines[number], number, path) for number in places])
+    if not with_faces:
+        return vertices, np.zeros((0, 3), np.int32)
+    faces: list[tuple[int, int, int]] = []
+    for number, line in enumerate(lines):
+        if line[:2] in (b"f ", b"f\t"):
+            corners = _corners(line, number, len(vertices), path)
+            faces += [(corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)]
+    return vertices, np.array(faces, np.int32).reshape(-1, 3)
+
+
+def _vertex(line: bytes, number: int, path: Path) -> tuple[float, float, float]:
+    try:
+        x, y, z = (float(cell) for cell in line.split()[1:4])
+    except ValueError:
+        raise FormatError(f"{path.name} has a vertex without three numbers in line {number + 1}.") from None
+    if not np.isfinite((x, y, z)).all():
+        raise FormatError(f"{path.name} has a value that is not a finite number in line {number + 1}.")
+    return x, y, z
+
+
+def _corners(line: bytes, number: int, vertices: int, path: Path) -> list[int]:
+    try:
+        named = [int(cell.split(b"/", 1)[0]) for cell in line.split()[1:]]
+    except ValueError:
+        raise FormatError(f"{path.name} has a face that is not made of numbers in line {number + 1}.") from None
+    corners = [index - 1 if index > 0 else vertices + index for index in named]
+    if len(corners) < 3 or 0 in named or not all(0 <= corner < vertices for corner in corners):
+        raise FormatError(
+            f"{path.name} has a face in line {number + 1} that is not made of the {vertices} vertices of the file."
+        )
+    return corners

@@ -1,0 +1,56 @@
+"""What a character file holds before it is ours: a mesh, its named shapes, in its own unit and frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.errors import FormatError
+from engine.take import Array
+
+MAX_VERTICES = 2_000_000
+MAX_SHAPES = 512
+
+
+@dataclass(frozen=True, eq=False)
+class RawCharacter:
+    """A mesh with shapes as its file has them.
+
+    Attributes
+    ----------
+    name : of the file or folder
+    vertices : (n, 3) float64, the file's unit and axes
+    triangles : (t, 3) int32
+    shapes : the file's name of each shape -> (n, 3) float32 deltas
+    notices : sentences about the import that the user should see
+    """
+
+    name: str
+    vertices: Array
+    triangles: npt.NDArray[np.int32]
+    shapes: dict[str, npt.NDArray[np.float32]]
+    notices: tuple[str, ...] = ()
+
+
+def check(raw: RawCharacter) -> RawCharacter:
+    """Return the character; raises `FormatError` with the first thing about it that cannot be used."""
+    count = len(raw.vertices)
+    if not count or not len(raw.triangles):
+        raise FormatError(f"{raw.name} holds no mesh.", "A character needs vertices and faces.")
+    if not np.isfinite(raw.vertices).all():
+        bad = int(np.argwhere(~np.isfinite(raw.vertices))[0, 0])
+        raise FormatError(f"{raw.name} has a vertex that is not at a finite place: number {bad}.")
+    if raw.triangles.min() < 0 or raw.triangles.max() >= count:
+        raise FormatError(f"{raw.name} has a face that names vertex {raw.triangles.max()}; it has {count} vertices.")
+    if np.ptp(raw.vertices, axis=0).max() <= 0:
+        raise FormatError(f"{raw.name} has all its vertices at one place.")
+    for name, delta in raw.shapes.items():
+        if delta.shape != raw.vertices.shape:
+            raise FormatError(
+                f"{raw.name} has {len(delta)} vertices in its shape {name!r}, {count} in its neutral face."
+            )
+        if not np.isfinite(delta).all():
+            raise FormatError(f"{raw.name} has a value that is not a finite number in its shape {name!r}.")
+    return raw

@@ -1,0 +1,90 @@
+"""Markers: tracked points over time, from CSV, TRC or C3D."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from engine.errors import EditError, FormatError
+from engine.take import Array
+
+ENDINGS = (".csv", ".tsv", ".trc", ".c3d")
+TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+
+
+@dataclass(frozen=True, eq=False)
+class Markers:
+    """A capture: where each marker is in each frame.
+
+    Attributes
+    ----------
+    positions : (frames, n, 3) float64 mm; NaN where a marker was not seen
+    names : of the markers, each once
+    fps : frames per second
+    name : what to call the capture on screen
+    notices : sentences about the import that the user should see
+    """
+
+    positions: Array
+    names: tuple[str, ...]
+    fps: float
+    name: str = "untitled"
+    notices: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.positions.ndim != 3 or self.positions.shape[1:] != (len(self.names), 3) or not len(self.positions):
+            raise EditError("A capture needs at least one frame and three coordinates for each marker.")
+        twice = [name for index, name in enumerate(self.names) if name in self.names[:index]]
+        if twice:
+            raise EditError(f"The marker {twice[0]!r} is there twice.", "Rename or remove one of the two.")
+        if np.isinf(self.positions).any() or not (np.isfinite(self.fps) and self.fps > 0):
+            raise EditError("A capture needs finite positions and a frame rate above zero.")
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+
+def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Markers:
+    """Read a capture from a file of any kind in `ENDINGS`.
+
+    Parameters
+    ----------
+    path : the file
+    unit : mm, cm or m, instead of what the file says or its size suggests
+    fps : frame rate, instead of what the file says
+
+    Raises
+    ------
+    FormatError : with file and, where known, row and column
+    """
+    from engine.formats import markers_c3d, markers_csv, markers_trc
+
+    if unit is not None and unit not in TO_MM:
+        raise FormatError(f"{unit!r} is not a unit of length.", f"Use one of: {', '.join(TO_MM)}.")
+    readers = {".csv": markers_csv.read, ".tsv": markers_csv.read, ".trc": markers_trc.read, ".c3d": markers_c3d.read}
+    if path.suffix.lower() not in readers:
+        raise FormatError(f"{path.name} is not a kind of file that markers can be in.", f"Use: {', '.join(ENDINGS)}.")
+    try:
+        return readers[path.suffix.lower()](path, unit=unit, fps=fps)
+    except EditError as error:
+        raise FormatError(f"{path.name} could not be used. {error.sentence}", error.advice) from error
+
+
+def write(markers: Markers, path: Path) -> None:
+    """Write a capture as CSV or TRC, by the file's ending; raises `FormatError` for another."""
+    from engine.formats import markers_csv, markers_trc
+
+    writers = {".csv": markers_csv.write, ".trc": markers_trc.write}
+    if path.suffix.lower() not in writers:
+        raise FormatError(f"Markers cannot be written to {path.name}.", "Use .csv or .trc.")
+    writers[path.suffix.lower()](markers, path)
+
+
+def unit_by_size(positions: Array) -> tuple[str, str]:
+    """Return the unit in which markers, (frames, n, 3), are as large as a face, and a sentence that says so."""
+    low, high = np.nanmin(positions, axis=1), np.nanmax(positions, axis=1)
+    extent = float(np.nanmedian((high - low).max(axis=1)))
+    unit = "m" if extent < 1.5 else "cm" if extent < 45 else "mm"
+    return unit, f"Positions were taken as {unit}: the markers span {extent:.3g} of them."

@@ -1,0 +1,92 @@
+"""Markers as CSV: an optional time or frame column, then x, y and z of each marker; empty cells are gaps."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from math import isnan
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.errors import FormatError
+from engine.formats.atomic import write_bytes
+from engine.formats.markers import TO_MM, Markers, unit_by_size
+from engine.formats.markers_text import decoded, lines_of, numbers
+from engine.take import Array
+
+EXPECTED = "A marker CSV has columns such as time, nose_x, nose_y, nose_z; empty cells are gaps."
+FALLBACK_FPS = 30.0
+_COORDINATE = re.compile(r"^(.+?)[ _.:]?([xyzXYZ])(?: ?[(\[](mm|cm|m)[)\]])?$")
+
+
+def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Markers:
+    """Read a marker CSV; separators may be commas, semicolons or tabs. Parameters and errors as `markers.read`."""
+    lines = lines_of(path, EXPECTED)
+    first = decoded(lines[0], path, EXPECTED)
+    separator = max((",", ";", "\t"), key=first.count)
+    header = [cell.strip().strip('"') for cell in first.split(separator)]
+    names, columns, said = _columns(header, path)
+    if len(lines) < 2:
+        raise FormatError(f"{path.name} has a header but no frames.")
+    table = numbers(lines[1:], len(header), separator=separator.encode(), first_row=2, path=path)
+    positions = table[:, columns]
+    if not np.isfinite(positions).all(axis=2).any():
+        raise FormatError(f"{path.name} holds no frame in which a marker was seen.")
+    positions[~np.isfinite(positions).all(axis=2)] = np.nan
+    notices = []
+    if unit is None and said is None:
+        said, notice = unit_by_size(positions[np.isfinite(positions).any(axis=(1, 2))])
+        notices.append(notice)
+    rate = fps or _rate(header, table)
+    if rate is None:
+        rate = FALLBACK_FPS
+        notices.append(f"The file has no times: taken as {FALLBACK_FPS:g} fps.")
+    return Markers(positions * TO_MM[unit or said or "mm"], names, rate, path.name, tuple(notices))
+
+
+def _columns(header: list[str], path: Path) -> tuple[tuple[str, ...], npt.NDArray[np.int64], str | None]:
+    """Return the markers' names, their columns, (n, 3), and the unit that the header names."""
+    found: dict[str, dict[str, int]] = {}
+    units = set()
+    for column, cell in enumerate(header):
+        match = _COORDINATE.match(cell)
+        if match and cell.lower() not in ("time", "frame", "index"):
+            axes = found.setdefault(match[1], {})
+            if match[2].lower() in axes:
+                raise FormatError(f"{path.name} names the column {cell[:40]!r} twice.", EXPECTED)
+            axes[match[2].lower()] = column
+            units.add(match[3])
+    if not found:
+        raise FormatError(f"{path.name} has no columns of markers in its first row.", EXPECTED)
+    for name, axes in found.items():
+        if len(axes) < 3:
+            lacking = next(axis for axis in "xyz" if axis not in axes)
+            raise FormatError(f"{path.name} has no {lacking} column for the marker {name[:40]!r}.", EXPECTED)
+    if len(units) > 1:
+        raise FormatError(f"{path.name} names different units in its first row.", "Use one unit for all markers.")
+    columns = np.array([[axes[axis] for axis in "xyz"] for axes in found.values()])
+    return tuple(found), columns, units.pop()
+
+
+def _rate(header: list[str], table: Array) -> float | None:
+    for column, cell in enumerate(header):
+        if cell.lower() in ("time", "time_s", "seconds", "t") and len(table) > 1:
+            steps = np.diff(table[:, column])
+            typical = float(np.nanmedian(steps)) if np.isfinite(steps).any() else 0.0
+            return round(1 / typical, 6) if 1e-4 < typical < 10 else None
+    return None
+
+
+def write(markers: Markers, path: Path) -> None:
+    """Write a capture as CSV with a time column, in mm, gaps empty."""
+    write_bytes(path, _encode(markers))
+
+
+def _encode(markers: Markers) -> Iterator[bytes]:
+    cells = [f"{name}_{axis} (mm)" for name in markers.names for axis in "xyz"]
+    yield (",".join(["time", *cells]) + "\n").encode()
+    for frame, row in enumerate(markers.positions.reshape(len(markers), -1).tolist()):
+        values = ",".join("" if isnan(value) else f"{value:.6f}" for value in row)
+        yield f"{frame / markers.fps:.9f},{values}\n".encode()

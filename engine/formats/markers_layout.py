@@ -1,0 +1,30 @@
+"""Landmark files: which vertex of a character carries which marker, as CSV with the columns marker and vertex."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from engine.errors import FormatError
+from engine.formats.markers_text import decoded, lines_of
+
+EXPECTED = "A landmark file has the columns marker,vertex and one row for each marker."
+
+
+def read(path: Path, *, vertices: int) -> dict[str, int]:
+    """Return vertex by marker name; raises `FormatError` with the row of what is no vertex of `vertices` or twice there."""
+    lines = [decoded(line, path, EXPECTED) for line in lines_of(path, EXPECTED)]
+    if [cell.strip().lower() for cell in lines[0].split(",")] != ["marker", "vertex"]:
+        raise FormatError(f"{path.name} does not begin with the row marker,vertex.", EXPECTED)
+    found: dict[str, int] = {}
+    for row, line in enumerate(lines[1:], 2):
+        if not line.strip():
+            continue
+        name, _, vertex = (part.strip() for part in line.rpartition(","))
+        if not (vertex.isascii() and vertex.isdigit() and len(vertex) < 10 and int(vertex) < vertices):
+            raise FormatError(f"{path.name} has {vertex[:20]!r} for a vertex in row {row}.", f"There are {vertices}.")
+        if name in found or not name:
+            raise FormatError(f"{path.name} names the marker {name[:40]!r} twice or not at all in row {row}.")
+        found[name] = int(vertex)
+    if not found:
+        raise FormatError(f"{path.name} names no marker.", EXPECTED)
+    return found

@@ -1,0 +1,75 @@
+"""Tables of numbers with gaps, as marker files hold them."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from engine.errors import FormatError
+from engine.take import Array
+
+MAX_CELLS = 3 * 4096
+MAX_HEADER_BYTES = 512 * 1024
+
+
+def lines_of(path: Path, expected: str) -> list[bytes]:
+    """Return a text file's lines without their ends; raises `FormatError` where it is empty, unreadable or no text."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+    if not content.strip():
+        raise FormatError(f"{path.name} is empty.", expected)
+    if b"\x00" in content[:MAX_HEADER_BYTES]:
+        raise FormatError(f"{path.name} is not a text file.", expected)
+    return [line.rstrip(b"\r") for line in content.removeprefix(b"\xef\xbb\xbf").rstrip().split(b"\n")]
+
+
+def decoded(line: bytes, path: Path, expected: str) -> str:
+    """Return a header line as text; raises `FormatError` where it is too long or not UTF-8."""
+    if len(line) > MAX_HEADER_BYTES or max(line.count(b","), line.count(b"\t")) > MAX_CELLS:
+        raise FormatError(f"{path.name} has too many columns.", expected)
+    try:
+        return line.decode("utf-8")
+    except UnicodeDecodeError:
+        raise FormatError(f"{path.name} is not a text file.", expected) from None
+
+
+def numbers(lines: list[bytes], cells: int, *, separator: bytes, first_row: int, path: Path) -> Array:
+    """Return (rows, cells) float64, NaN where a cell is empty; short rows are gaps to their end.
+
+    Raises `FormatError` with row and column of what is no finite number, and for a row with too many cells.
+    """
+    rows = []
+    for row, line in enumerate(lines, first_row):
+        parts = line.split(separator)
+        while len(parts) > cells and not parts[-1].strip():
+            parts.pop()
+        if len(parts) > cells:
+            raise FormatError(f"{path.name} has {len(parts)} cells in row {row} where its header has {cells}.")
+        parts += [b""] * (cells - len(parts))
+        rows.append(b",".join(part if part.strip() else b"nan" for part in parts))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            table = np.fromstring(b",".join(rows), dtype=np.float64, sep=",").reshape(len(rows), cells)
+        except (ValueError, DeprecationWarning):
+            raise _blame(rows, first_row, path) from None
+    infinite = np.argwhere(np.isinf(table))
+    if len(infinite):
+        row, column = infinite[0]
+        raise FormatError(f"{path.name} has an infinite number in row {row + first_row}, column {column + 1}.")
+    return np.asarray(table)
+
+
+def _blame(rows: list[bytes], first_row: int, path: Path) -> FormatError:
+    for row, line in enumerate(rows, first_row):
+        for column, cell in enumerate(line.split(b","), 1):
+            try:
+                float(cell)
+            except ValueError:
+                shown = cell[:20].decode("utf-8", "replace")
+                return FormatError(f"{path.name} has {shown!r} for a number in row {row}, column {column}.")
+    return FormatError(f"{path.name} could not be read as numbers.")

@@ -1,0 +1,187 @@
+"""Local patches of a data set, and the solve that keeps them while a few data points are given (ZLL17 section 3.1)."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
+
+from engine.errors import EditError
+from engine.take import Array
+
+Indices = npt.NDArray[np.int64]
+FLAT = 1e-7  # a direction this much thinner than the widest is one that the patch does not have
+CENTRE_SHARE = 10.0  # weight of a patch's own vertex against all its neighbours together: ten heads of the second set
+COLUMNS = 4  # solved at a time: more wake threads that cost more than they do (80 at once took ten times as long)
+REACH = 2.0  # neighbours count by distance to the power of minus this
+
+
+def adjacency(triangles: npt.NDArray[np.integer], vertices: int) -> sp.csr_array:
+    """Return which vertices share an edge, (vertices, vertices) of ones; raises `EditError` for an index outside."""
+    if len(triangles) and (triangles.min() < 0 or triangles.max() >= vertices):
+        raise EditError(f"A triangle names a vertex beyond the mesh's {vertices}.")
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    pairs = (np.concatenate([start, end]), np.concatenate([end, start]))
+    joined = sp.coo_array((np.ones(2 * len(start)), pairs), shape=(vertices, vertices)).tocsr()
+    joined.data[:] = 1.0
+    return joined
+
+
+def rings(triangles: npt.NDArray[np.integer], points: Array, *, size: int = 1) -> sp.csr_array:
+    """Return each vertex's neighbourhood: itself and `size` rings of the mesh, never what merely lies near.
+
+    The entries are weights: near neighbours count more, the vertex itself most. A row is one patch of `alignment`.
+    """
+    ring = (adjacency(triangles, len(points)) + sp.eye_array(len(points))).tocsr()
+    reached = ring
+    for _ in range(size - 1):
+        reached = (reached @ ring).tocsr()
+    reached.sort_indices()
+    return _weighted(reached, points)
+
+
+def similar(points: Array, *, size: int) -> sp.csr_array:
+    """Return each data point's neighbourhood: itself and the `size` - 1 points most like it, weighted as `rings`.
+
+    Of frames these are the ones just before and after, and those where the face comes by again.
+    """
+    size = min(size, len(points))
+    if size == 1:
+        return sp.eye_array(1, format="csr")
+    nearest: Indices = np.asarray(cKDTree(points).query(points, k=size)[1], np.int64)
+    missed = ~(nearest == np.arange(len(points))[:, None]).any(axis=1)  # among more equals than `size`
+    nearest[missed, -1] = np.flatnonzero(missed)
+    nearest.sort(axis=1)
+    starts = np.arange(len(points) + 1) * size
+    return _weighted(sp.csr_array((np.ones(nearest.size), nearest.ravel(), starts), shape=2 * (len(points),)), points)
+
+
+def windows(frames: int, *, size: int) -> sp.csr_array:
+    """Return each frame's neighbourhood in time: `size` consecutive frames around it, shifted inwards at the ends."""
+    size = min(size, frames)
+    first = np.clip(np.arange(frames) - size // 2, 0, frames - size)
+    members = first[:, None] + np.arange(size)
+    starts = np.arange(frames + 1) * size
+    return sp.csr_array((np.ones(members.size), members.ravel(), starts), shape=(frames, frames))
+
+
+def _weighted(pattern: sp.csr_array, points: Array) -> sp.csr_array:
+    """Return the pattern with weights ``distance^-REACH``, and `CENTRE_SHARE` times their sum for a patch's own point."""
+    count = len(points)
+    row = np.repeat(np.arange(count), np.diff(pattern.indptr))
+    own = row == pattern.indices
+    away = np.linalg.norm(points[row] - points[pattern.indices], axis=1)
+    nearest = np.full(count, np.inf)
+    np.minimum.at(nearest, row, np.where(away > 0, away, np.inf))
+    closest = np.where(np.isfinite(nearest), nearest, 1.0)[row]
+    falloff = np.where(own, 0.0, (closest / np.maximum(away, closest)) ** REACH)
+    total = np.maximum(np.bincount(row, falloff, minlength=count), 1e-12)
+    weights = np.where(own, CENTRE_SHARE * total[row], falloff)
+    return sp.csr_array((weights, pattern.indices, pattern.indptr), shape=(count, count))
+
+
+def alignment(
+    points: Array, neighbourhoods: sp.csr_array, *, dimension: int = 3, stiffness: float = 0.0
+) -> sp.csc_array:
+    """Return B of ZLL17 equation 15: what it costs a data set to leave the local structure of `points`.
+
+    ``trace(Y^T B Y) = sum_i min_{D_i, c_i} |q_i (Y_i - X_i~ D_i - c_i)|^2 + stiffness * s_i^2 |D_i|^2`` with X_i~ the
+    tangent coordinates of patch i (local PCA), q_i the roots of its neighbours' weights, and s_i its largest extent.
+    With no stiffness every affine motion of a patch is free, as in the paper; with some, Y is best a displacement, and
+    a patch that turns or stretches without a label's asking for it pays.
+
+    Parameters
+    ----------
+    points : (n, D) data points
+    neighbourhoods : (n, n) weights; row i holds the members of patch i
+    dimension : of the tangent space; directions that a patch does not have are left out
+    """
+    rows, columns, values = zip(*_scattered(points, neighbourhoods, dimension, stiffness), strict=True)
+    places = (np.concatenate(rows), np.concatenate(columns))
+    count = len(points)
+    return sp.coo_array((np.concatenate(values), places), shape=(count, count)).tocsc()
+
+
+def _scattered(
+    points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float
+) -> Iterator[tuple[Indices, Indices, Array]]:
+    """Yield rows, columns and values of the patches' matrices, patches of one size at a time."""
+    sizes = np.diff(neighbourhoods.indptr)
+    for size in np.unique(sizes[sizes > 0]):
+        entries = neighbourhoods.indptr[np.flatnonzero(sizes == size)][:, None] + np.arange(size)
+        members = neighbourhoods.indices[entries].astype(np.int64)
+        local = _patch_matrices(points[members], neighbourhoods.data[entries], dimension, stiffness)
+        yield np.repeat(members, size, axis=1).ravel(), np.tile(members, (1, size)).ravel(), local.ravel()
+
+
+def _patch_matrices(members: Array, weights: Array, dimension: int, stiffness: float) -> Array:
+    """Return I - G G^T of Algorithm 1, (patches, size, size), for members (patches, size, D) and their weights."""
+    weights = weights / weights.mean(axis=1, keepdims=True)
+    root = np.sqrt(weights)
+    mean = np.einsum("pk,pkd->pd", weights, members) / weights.sum(axis=1)[:, None]
+    centred = root[:, :, None] * (members - mean[:, None])
+    tangent, extent, _ = np.linalg.svd(centred, full_matrices=False)
+    widest = np.maximum(extent[:, :1], 1e-300)
+    free = (extent > FLAT * widest) & (np.arange(extent.shape[1]) < dimension)
+    share = np.where(free, extent**2 / np.maximum(extent**2 + stiffness * widest**2, 1e-300), 0.0)
+    tangent = tangent * np.sqrt(share)[:, None, :]
+    constant = root / np.linalg.norm(root, axis=1, keepdims=True)
+    kept = np.eye(root.shape[1]) - constant[:, :, None] * constant[:, None, :] - tangent @ tangent.transpose(0, 2, 1)
+    return np.asarray(root[:, :, None] * kept * root[:, None, :])
+
+
+class LabelSolver:
+    """Every data point from a few labelled ones (ZLL17 equation 18), factorised once.
+
+    Minimises ``trace(Y^T B Y) + beta * |Y[labelled] - labels|^2`` by the sparse system ``(B + beta S) Y = beta S labels``.
+
+    Parameters
+    ----------
+    energy : (n, n) sparse, B
+    labelled : (m,) indices of the labelled data points
+    beta : weight of a label, one for all or (m,)
+
+    Raises
+    ------
+    EditError : where the labels leave some data point free
+    """
+
+    def __init__(self, energy: sp.csc_array, labelled: Indices, *, beta: float | Array = 1e3) -> None:
+        count = energy.shape[0]
+        self._labelled, self._count = labelled, count
+        self._beta = np.broadcast_to(np.asarray(beta, np.float64), len(labelled))
+        held = sp.coo_array((self._beta, (labelled, labelled)), shape=(count, count))
+        system = (energy + held).tocsc()
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                self._factor = splu(
+                    system, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+                )
+        except (RuntimeError, Warning) as error:
+            raise _undetermined() from error
+        # A shift of everything costs nothing, so equal labels give equal points: unless others are free as well.
+        if not np.allclose(self.solve(np.ones((len(labelled), 1))), 1.0, atol=1e-5):
+            raise _undetermined()
+
+    def solve(self, labels: Array) -> Array:
+        """Return all data points, (n, k), for labels (m, k)."""
+        asked = np.zeros((self._count, labels.shape[1]))
+        np.add.at(asked, self._labelled, self._beta[:, None] * labels)
+        parts = [self._factor.solve(asked[:, k : k + COLUMNS]) for k in range(0, asked.shape[1], COLUMNS)]
+        return np.concatenate(parts, axis=1) if parts else asked
+
+    def influence(self) -> Array:
+        """Return how far each label moves each data point, (n, m): all solves to come in one matrix product."""
+        return self.solve(np.eye(len(self._labelled)))
+
+
+def _undetermined() -> EditError:
+    return EditError(
+        "The labels do not determine the result.", "Label more frames or points, not all of them in a line."
+    )

@@ -1,0 +1,195 @@
+"""A performance onto another head from a few labelled frames (ZLL17 section 3.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+from scipy.spatial.distance import cdist
+
+from engine.errors import EditError
+from engine.manifold.patches import Indices, LabelSolver, alignment, similar
+from engine.take import Array, Take
+
+COORDINATES = 40  # principal coordinates that tell frames apart; the rest is noise, and slow to search
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How frames hold together; chosen on the training takes (`retake evaluate manifold`).
+
+    neighbours : frames in a patch
+    dimension : of a patch's tangent space, the directions in which source and target may move differently
+    stiffness : cost of moving otherwise than the base does
+    beta : weight of a labelled frame
+    at_once : frames solved together; of a longer take these are spread over it, and each other frame follows its patch
+    """
+
+    neighbours: int = 100
+    dimension: int = 20
+    stiffness: float = 1e-4
+    beta: float = 1e3
+    at_once: int = 1200
+
+
+class Retargeter:
+    """Target frames whose local structure is the source's, given a few of them; factorised once for its labels.
+
+    With R the target less a first guess (`base`), minimises ``trace(R^T B R) + beta * |R[labelled] - labels|^2``, B from
+    patches of like source frames (ZLL17 eq. 15): between labels the target moves as the source does.
+
+    Parameters
+    ----------
+    source : (frames, D) what the source does, such as feature points in mm
+    base : (frames, q) the target as it would be with no labels
+    labelled : (m,) frames
+
+    Raises
+    ------
+    EditError : no label, a frame outside the source or labelled twice, values that are not finite
+    """
+
+    def __init__(
+        self,
+        source: Array,
+        base: Array,
+        labelled: Indices,
+        settings: Settings = Settings(),
+    ) -> None:
+        self._base = np.asarray(base, np.float64)
+        self._labelled = np.asarray(labelled, np.int64)
+        _require_usable(source, self._base, self._labelled)
+        points = coordinates(source)
+        self._solved = _spread(len(points), self._labelled, settings.at_once)
+        energy = alignment(
+            points[self._solved],
+            similar(points[self._solved], size=settings.neighbours),
+            dimension=settings.dimension,
+            stiffness=settings.stiffness,
+        )
+        place = np.searchsorted(self._solved, self._labelled)
+        self._solver = LabelSolver(energy, place, beta=settings.beta)
+        self._points, self._settings = points, settings
+
+    def solve(self, labels: Array) -> Array:
+        """Return the target, (frames, q), for the labelled frames' values, (m, q)."""
+        labels = np.asarray(labels, np.float64)
+        if labels.shape != (len(self._labelled), self._base.shape[1]):
+            raise EditError(f"{len(labels)} labels were given for {len(self._labelled)} labelled frames.")
+        if not np.isfinite(labels).all():
+            raise EditError("A label holds a value that is not a finite number.")
+        known = self._solver.solve(labels - self._base[self._labelled])
+        result = self._base.copy()
+        result[self._solved] += known
+        others = np.setdiff1d(np.arange(len(result)), self._solved)
+        if len(others):
+            result[others] += _by_patch(self._points, others, self._solved, known, self._settings)
+        return result
+
+
+def coordinates(source: Array) -> Array:
+    """Return frames as principal coordinates, (frames, <= 40): distances between frames stay as they are."""
+    flat = np.asarray(source, np.float64).reshape(len(source), -1)
+    centred = flat - flat.mean(axis=0)
+    _, axes = np.linalg.eigh(centred.T @ centred)
+    return np.asarray(centred @ axes[:, ::-1][:, :COORDINATES])
+
+
+def suggest_frames(source: Array, count: int, *, labelled: Sequence[int] = (), at_once: int = 1200) -> list[int]:
+    """Return which frames to label next, best first: each brings the take's other frames nearest to a labelled one.
+
+    Greedy k-median on the distance between frames. (Always labelling the frame least like the others measured worse
+    than evenly spaced labels: such frames are alone in what they do.)
+
+    Parameters
+    ----------
+    source : (frames, D) what the source does
+    count : how many to add
+    labelled : frames that have a label already
+    at_once : frames that are compared; of a longer take these are spread over it
+    """
+    points = coordinates(source)
+    candidates = _spread(len(points), np.asarray(labelled, np.int64), at_once)
+    away = cdist(points[candidates], points[candidates])
+    nearest = np.full(len(candidates), away.max() + 1.0)
+    for frame in labelled:
+        nearest = np.minimum(nearest, away[np.searchsorted(candidates, frame)])
+    suggested: list[int] = []
+    for _ in range(min(count, len(candidates) - len(set(labelled)))):
+        best = int(np.argmin(np.minimum(away, nearest).sum(axis=1)))
+        suggested.append(int(candidates[best]))
+        nearest = np.minimum(nearest, away[best])
+    return suggested
+
+
+def retarget_points(
+    source: Array, source_rest: Array, target_rest: Array, labels: dict[int, Array], settings: Settings | None = None
+) -> Array:
+    """Return feature points of the target, (frames, n, 3), from those of the source and a few labelled frames.
+
+    Parameters
+    ----------
+    source : (frames, n, 3)
+    source_rest, target_rest : (n, 3) the same points on both heads at rest
+    labels : the target's points, (n, 3), by frame
+    """
+    size = np.linalg.norm(target_rest - target_rest.mean(axis=0)) / np.linalg.norm(
+        source_rest - source_rest.mean(axis=0)
+    )
+    base = target_rest + size * (source - source_rest)
+    frames = np.array(sorted(labels), np.int64)
+    flat = base.reshape(len(base), -1)
+    retargeter = Retargeter(source.reshape(len(source), -1), flat, frames, settings or Settings())
+    return retargeter.solve(np.stack([labels[int(f)].ravel() for f in frames])).reshape(base.shape)
+
+
+def retarget_weights(take: Take, labels: dict[int, Array], settings: Settings | None = None) -> Take:
+    """Return the take as a target with shapes plays it, given the target's weights, (52,), at a few frames."""
+    frames = np.array(sorted(labels), np.int64)
+    if not len(frames):
+        raise EditError("There is no labelled frame.", "Pose the target at one frame or more.")
+    retargeter = Retargeter(take.weights, take.weights, frames, settings or Settings())
+    asked = np.stack([np.asarray(labels[int(frame)], np.float64) for frame in frames])
+    low, high = np.minimum(take.weights.min(axis=0), 0.0), np.maximum(take.weights.max(axis=0), 1.0)
+    return take.with_weights(np.clip(retargeter.solve(asked), low, high))
+
+
+def _require_usable(source: Array, base: Array, labelled: Indices) -> None:
+    if not len(labelled):
+        raise EditError("There is no labelled frame.", "Pose the target at one frame or more.")
+    if labelled.min() < 0 or labelled.max() >= len(source):
+        raise EditError(f"Frame {labelled.max()} has a label; the source has {len(source)} frames.")
+    if (np.diff(np.sort(labelled)) == 0).any():
+        raise EditError("A frame is labelled twice.")
+    if len(base) != len(source) or not (np.isfinite(source).all() and np.isfinite(base).all()):
+        raise EditError("The source holds values that are not finite numbers.", "Fill its gaps first.")
+
+
+def _spread(frames: int, labelled: Indices, at_once: int) -> Indices:
+    """Return the frames that are solved together, labelled ones among them, sorted."""
+    if frames <= at_once:
+        return np.arange(frames)
+    return np.union1d(np.linspace(0, frames - 1, at_once).round().astype(np.int64), labelled)
+
+
+def _by_patch(points: Array, others: Indices, solved: Indices, known: Array, settings: Settings) -> Array:
+    """Return what frames that were not solved do: the affine map of the patch of solved frames round each."""
+    size = min(settings.neighbours, len(solved))
+    tree = cKDTree(points[solved])
+    result = np.zeros((len(others), known.shape[1]))
+    for row, frame in enumerate(others):
+        away, near = tree.query(points[frame], k=size)
+        away, near = np.atleast_1d(away), np.atleast_1d(near)
+        weights = (away[0] + 1e-9) / (away + 1e-9)
+        weights = weights**2 / (weights**2).sum()
+        mean = weights @ points[solved[near]]
+        root = np.sqrt(weights)[:, None]
+        left, extent, right = np.linalg.svd(root * (points[solved[near]] - mean), full_matrices=False)
+        gain = extent / (extent**2 + max(settings.stiffness * extent[0] ** 2, 1e-300))
+        gain[settings.dimension :] = 0.0
+        average = weights @ known[near]
+        slope = (left * gain).T @ (root * (known[near] - average))
+        result[row] = average + ((points[frame] - mean) @ right.T) @ slope
+    return result

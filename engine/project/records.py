@@ -1,0 +1,179 @@
+"""What a project holds, as plain data, and how its edits play out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+
+from engine.controls import CONTROLS
+from engine.take import SHAPES, Array, Take
+
+MARK = "mark"  # kind of an edit whose inputs are marks before and after
+
+
+@dataclass(frozen=True, eq=False)
+class Edit:
+    """One finished step of the user; an object is one step for ever, so identity tells whether it is stored.
+
+    Attributes
+    ----------
+    kind : the verb, such as drag or fill
+    title : what the user did, as the Undo menu shows it
+    start : first frame
+    weights : (frames, 52) what the edit put in place; no frames where it changed none
+    asked : (frames, 8) mm, what had been asked for up to and including this edit; NaN where nothing was
+    inputs : what the edit was made from, as JSON can hold it, so that it can be run again
+    """
+
+    kind: str
+    title: str
+    start: int
+    weights: Array
+    asked: Array
+    inputs: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def stop(self) -> int:
+        """The frame after the last."""
+        return self.start + len(self.weights)
+
+
+@dataclass(frozen=True)
+class Span:
+    """Frames start to stop (half-open) of a region, marked for work; kind is who marked it: lost, user."""
+
+    start: int
+    stop: int
+    region: str = "face"
+    kind: str = "user"
+
+
+@dataclass(frozen=True)
+class Pin:
+    """Weights by shape name that must be met exactly at a frame; the change spreads over start to stop (half-open)."""
+
+    frame: int
+    weights: Mapping[str, float]
+    start: int
+    stop: int
+
+
+@dataclass(frozen=True)
+class Note:
+    """A reviewer's remark on a frame; time is ISO 8601 with its zone."""
+
+    frame: int
+    author: str
+    time: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Media:
+    """Audio or video beside the curves.
+
+    Attributes
+    ----------
+    kind : audio or video
+    path : relative to the project's folder, with forward slashes; a file elsewhere goes by its name alone
+    sha256 : of its bytes, hexadecimal
+    offset_s : time of the take's first frame within it
+    """
+
+    kind: str
+    path: str
+    sha256: str
+    offset_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class Marks:
+    """What people put beside the curves."""
+
+    spans: tuple[Span, ...] = ()
+    pins: tuple[Pin, ...] = ()
+    notes: tuple[Note, ...] = ()
+    media: tuple[Media, ...] = ()
+    verdict: str = ""
+
+
+def marks_of(stored: Mapping[str, Any]) -> Marks:
+    """Return marks from what `dataclasses.asdict` made of them; raises `KeyError` or `TypeError` for anything else."""
+    return Marks(
+        spans=tuple(Span(**entry) for entry in stored["spans"]),
+        pins=tuple(Pin(**entry) for entry in stored["pins"]),
+        notes=tuple(Note(**entry) for entry in stored["notes"]),
+        media=tuple(Media(**entry) for entry in stored["media"]),
+        verdict=stored["verdict"],
+    )
+
+
+def mark_edit(title: str, before: Marks, after: Marks) -> Edit:
+    """Return the edit that changes marks and no frame."""
+    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
+    return Edit(MARK, title, 0, *rows, {"before": asdict(before), "after": asdict(after)})
+
+
+@dataclass(frozen=True, eq=False)
+class Contents:
+    """All that a project holds.
+
+    Attributes
+    ----------
+    original : the take as it was opened
+    edits : oldest first, those that were undone last
+    position : how many of them are in effect
+    """
+
+    original: Take
+    edits: tuple[Edit, ...] = ()
+    position: int = 0
+    marks: Marks = Marks()
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a project is, without reading all of it: the take's name, its length, edits in effect, last change."""
+
+    name: str
+    frames: int
+    fps: float
+    edits: int
+    changed: datetime
+
+
+@dataclass(frozen=True, eq=False)
+class Replayed:
+    """What edits come to: the take in effect, the asked values, and the rows that each edit replaced.
+
+    Attributes
+    ----------
+    take : with the edits up to the position
+    asked : (frames, 8) mm, NaN where nothing was asked
+    before : of each edit the (frames, 52) weights and (frames, 8) asked values that it found
+    """
+
+    take: Take
+    asked: Array
+    before: tuple[tuple[Array, Array], ...]
+
+
+def replay(contents: Contents) -> Replayed:
+    """Return the state at the project's position, bit for bit as it was left."""
+    weights = contents.original.weights.copy()
+    asked = np.full((len(weights), len(CONTROLS)), np.nan)
+    before: list[tuple[Array, Array]] = []
+    shown = (weights.copy(), asked.copy())
+    for index, edit in enumerate(contents.edits):
+        rows = slice(edit.start, edit.stop)
+        before.append((weights[rows].copy(), asked[rows].copy()))
+        weights[rows], asked[rows] = edit.weights, edit.asked
+        if index < contents.position:
+            shown[0][rows], shown[1][rows] = edit.weights, edit.asked
+    for array in shown:
+        array.flags.writeable = False
+    return Replayed(contents.original.with_weights(shown[0]), shown[1], tuple(before))

@@ -1,0 +1,220 @@
+"""Pins: a pose required exactly at a frame spreads over a range, and the motion stays (SLS12 section 6)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from engine import exact
+from engine.character import Character, bundled
+from engine.controls import bundled_measurer, control_index
+from engine.errors import EditError
+from engine.spacetime import prior
+from engine.spacetime.closure import Gaps
+from engine.spacetime.layout import standard
+from engine.spacetime.solve import MovementMatcher
+from engine.spacetime.system import Position, System
+from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take, runs
+
+Pose = Mapping[str, float] | Array  # weights by name, or (52,) with NaN for what is not pinned
+
+
+@dataclass(frozen=True)
+class Spreading:
+    """How a pin spreads.
+
+    Attributes
+    ----------
+    alpha : pull back to the take's own pose, which lets small shapes return before large ones; 0 fills the range evenly
+    closure : strength by which lips and lids that meet in the take keep meeting, relative to the match of velocities
+    stiffness : what shapes pay for moving at all, so that closing takes the few that close instead of many that cancel
+    """
+
+    alpha: float = 0.0
+    closure: float = 30000.0
+    stiffness: float = 0.1
+
+
+class Spread:
+    """Spreads changes of some frames over a motion, keeping its velocities and its closures.
+
+    With X = W - W0 it minimises ``|D X B'|^2 + stiffness |D X|^2 + alpha prior(X) + closure c |gaps(X)|^2``, the held
+    weights given: SLS12 equation 4 and section 7.1 with the take W0 itself as the source, so that no pin is no change.
+    c tells how far each gap of W0 is closed. Around a pin that stands where a gap is closed, the pin decides: that
+    closing is let go.
+    Factorises here; a call only substitutes.
+
+    Parameters
+    ----------
+    motion : (f, 52), W0
+    held : (f, 52) bool, weights that a call gives
+    pins : frames among those held that are pins rather than the range's edges
+    spreading : how
+    character : whose markers and gaps are matched
+    """
+
+    def __init__(
+        self,
+        motion: Array,
+        held: Mask,
+        pins: Iterable[int],
+        *,
+        spreading: Spreading | None = None,
+        character: Character | None = None,
+    ) -> None:
+        how, face = spreading or Spreading(), _face(character or bundled())
+        self._motion, self._held = motion, held
+        closed = how.closure * np.repeat(_let_go(face.gaps.closedness(motion), pins), 3, axis=1)
+        closed[held.all(axis=1)] = 0.0
+        position = Position(face.gaps.rows, closed) if closed.any() else None
+        alpha = how.alpha * face.prior.scale(face.basis)
+        system = System(face.basis, len(motion), face.prior, alpha, position, stiffness=how.stiffness)
+        self._matcher = MovementMatcher(system, held)
+
+    def __call__(self, values: Array) -> Array:
+        """Return the new motion, (f, 52), of values, (f, 52), of which the held ones count and are met exactly.
+
+        The other weights are kept in 0..1, or in what the motion itself has.
+        """
+        change = np.where(self._held, values - self._motion, 0.0)
+        moved = self._motion + self._matcher.settle(np.zeros_like(change), change)
+        limited = np.clip(moved, np.minimum(self._motion, 0.0), np.maximum(self._motion, 1.0))
+        return np.where(self._held, values, limited)
+
+
+@dataclass(frozen=True, eq=False)
+class _Face:
+    basis: Array
+    prior: prior.Prior
+    gaps: Gaps
+
+
+@lru_cache(maxsize=4)
+def _face(character: Character) -> _Face:
+    basis = standard(character).deltas(character).reshape(len(SHAPES), -1).T
+    return _Face(basis, prior.from_shapes(basis), Gaps(character))
+
+
+def _let_go(closedness: Array, pins: Iterable[int]) -> Array:
+    """Return closedness, (f, g), without the closings during which there is a pin."""
+    kept = closedness.copy()
+    for frame in pins:
+        for gap in np.flatnonzero(closedness[frame] > 0):
+            start, stop = next(run for run in runs(closedness[:, gap] > 0) if run[0] <= frame < run[1])
+            kept[start:stop, gap] = 0.0
+    return kept
+
+
+class PinSolver:
+    """Pins of one take over one range, prepared so that moving a slider costs as little as possible.
+
+    Parameters
+    ----------
+    take : what is edited
+    pins : pose by frame; which weights are pinned is fixed here, their values may change with each `solve`
+    frames : half-open range outside which nothing changes; the frames beside it hold it
+    whole : a pin without a weight pins that weight where the take has it; otherwise such weights are free
+    spreading : how
+
+    Raises
+    ------
+    EditError : for a pin outside the range, an unknown shape, or a range outside the take
+    """
+
+    def __init__(
+        self,
+        take: Take,
+        pins: Mapping[int, Pose],
+        frames: tuple[int, int],
+        *,
+        whole: bool = True,
+        spreading: Spreading | None = None,
+    ) -> None:
+        self._take, self._whole, self._frames = take, whole, frames
+        _check(take, pins, frames)
+        self._first, last = max(frames[0] - 1, 0), min(frames[1] + 1, len(take))
+        self._motion = take.weights[self._first : last]
+        self._pinned = {frame: self._mask(pose) for frame, pose in pins.items()}
+        held = np.zeros(self._motion.shape, bool)
+        held[: frames[0] - self._first] = True
+        held[frames[1] - self._first :] = True
+        for frame, mask in self._pinned.items():
+            held[frame - self._first] = mask
+        self._spread = Spread(self._motion, held, [frame - self._first for frame in pins], spreading=spreading)
+
+    def _mask(self, pose: Pose) -> Mask:
+        return np.ones(len(SHAPES), bool) if self._whole else np.isfinite(_filled(pose))
+
+    def solve(self, pins: Mapping[int, Pose]) -> Array:
+        """Return the weights of the range, (stop - start, 52), for new values of the same pins."""
+        values = self._motion.copy()
+        if pins.keys() != self._pinned.keys():
+            raise EditError("The pins are at other frames than before.", "Prepare the range again.")
+        for frame, pose in pins.items():
+            filled = _filled(pose)
+            if not self._whole and not np.array_equal(np.isfinite(filled), self._pinned[frame]):
+                raise EditError("The pins hold other weights than before.", "Prepare the range again.")
+            values[frame - self._first] = np.where(np.isfinite(filled), filled, values[frame - self._first])
+        start, stop = self._frames
+        return self._spread(values)[start - self._first : stop - self._first]
+
+    def take(self, pins: Mapping[int, Pose]) -> Take:
+        """Return the take with new values of the same pins; every frame outside the range is bit-identical."""
+        weights = self._take.weights.copy()
+        weights[slice(*self._frames)] = self.solve(pins)
+        return self._take.with_weights(weights)
+
+
+def pin(
+    take: Take,
+    pins: Mapping[int, Pose],
+    frames: tuple[int, int],
+    *,
+    whole: bool = True,
+    spreading: Spreading | None = None,
+) -> Take:
+    """Return the take with poses pinned, spread over a half-open range; parameters and errors as `PinSolver`."""
+    return PinSolver(take, pins, frames, whole=whole, spreading=spreading).take(pins)
+
+
+def pose_reaching(take: Take, frame: int, controls: Mapping[str, float]) -> Array:
+    """Return the pose, (52,), nearest to a frame's whose controls have given values in mm, as far as weights allow."""
+    if not 0 <= frame < len(take):
+        raise EditError(f"Frame {frame} is not within the take, which has {len(take)} frames.")
+    columns = np.array([control_index(name) for name in controls])
+    asked = np.array([list(controls.values())], float)
+    if not np.isfinite(asked).all():
+        raise EditError("A control is pinned to something that is not a finite number.")
+    here = take.weights[frame : frame + 1]
+    every = np.ones(len(SHAPES), bool)
+    return np.asarray(exact.project(here, asked, columns, bundled_measurer(), free=every)[0])
+
+
+def _check(take: Take, pins: Mapping[int, Pose], frames: tuple[int, int]) -> None:
+    start, stop = frames
+    if not 0 <= start < stop <= len(take):
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
+    if not pins:
+        raise EditError("There is no pin to spread.", "Pin a pose at a frame of the range.")
+    for frame in pins:
+        if not start <= frame < stop:
+            raise EditError(f"The pin at frame {frame} is not within the range {start}:{stop}.", "Widen the range.")
+
+
+def _filled(pose: Pose) -> Array:
+    """Return a pose as (52,), NaN for what it does not pin; raises `EditError` for unknown shapes and no numbers."""
+    if isinstance(pose, np.ndarray):
+        if pose.shape != (len(SHAPES),) or np.isinf(pose).any():
+            raise EditError(f"A pinned pose needs {len(SHAPES)} finite weights.")
+        return pose
+    filled = np.full(len(SHAPES), np.nan)
+    for name, value in pose.items():
+        if name not in SHAPE_INDEX:
+            raise EditError(f"There is no shape called {name!r}.", "Shapes have ARKit names, such as jawOpen.")
+        if not np.isfinite(value):
+            raise EditError(f"The shape {name} is pinned to something that is not a finite number.")
+        filled[SHAPE_INDEX[name]] = value
+    return filled

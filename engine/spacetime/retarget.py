@@ -1,0 +1,179 @@
+"""Carrying markers or a take to another head (SLS12 sections 3 to 5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.character import Character
+from engine.errors import EditError
+from engine.spacetime import prior as priors
+from engine.spacetime.align import Warp
+from engine.spacetime.bounded import Bounds
+from engine.spacetime.closure import GAPS, Gaps, closedness
+from engine.spacetime.layout import Layout, standard
+from engine.spacetime.prior import Prior
+from engine.spacetime.solve import MovementMatcher
+from engine.spacetime.source import Source, bridge
+from engine.spacetime.system import Position, System
+from engine.take import MODEL_FPS, SHAPE_INDEX, SHAPES, Array, Take
+
+TIGHTER = 0.8  # of the source's gap: what nearly closes errs on the closed side
+UNSEEN_MM = 0.3  # a shape that moves every marker less than this is not told by markers
+
+
+@dataclass(frozen=True)
+class Matching:
+    """What a retarget is asked to respect, beside the source's velocities.
+
+    Attributes
+    ----------
+    alpha : how much the target's likely poses count, at 30 fps; the same on any head (SLS12 equation 4)
+    beta : how much the markers' places count beside their velocities, at 30 fps (section 7.1); velocities alone would
+        let a long-held pose sink back to rest
+    closure : how much lips and lids that meet in the source are to meet in the target
+    bounds : range of the weights, which most programs cut off beyond 0..1; None for the paper's free weights
+    """
+
+    alpha: float = 0.005
+    beta: float = 0.1
+    closure: float = 30.0
+    bounds: Bounds | None = field(default_factory=Bounds)
+
+
+@dataclass(frozen=True, eq=False)
+class Correspondence:
+    """A source and a target brought together: the target's shapes at the markers, in the source's proportions.
+
+    Attributes
+    ----------
+    basis : (3n, m) mm per unit of weight
+    shapes : (m,) columns of `SHAPES` that markers tell of
+    motion : (frames, 3n) mm, gaps bridged
+    believed : (frames - 1, 3n), or None where no marker is ever missing
+    gap_rows : (3g, m) mm per unit of weight, in the target's own proportions
+    gap_places : (frames, 3g) mm, what the gaps have to change from rest to be a little narrower than the source's
+    closedness : (frames, g) in 0..1, of the source
+    """
+
+    basis: Array
+    shapes: npt.NDArray[np.int64]
+    motion: Array
+    believed: Array | None
+    gap_rows: Array
+    gap_places: Array
+    closedness: Array
+
+    @property
+    def prior(self) -> Prior:
+        """Return the prior of the target's shapes about the face at rest."""
+        return priors.from_shapes(self.basis)
+
+
+def correspond(source: Source, character: Character, layout: Layout | None = None) -> Correspondence:
+    """Bring a source and a target together by the markers they share.
+
+    Raises `EditError` that names what is missing, coincides, or lies on a line or in a plane.
+    """
+    placed = layout or standard(character)
+    shared = [name for name in source.names if name in placed.names]
+    if len(shared) < 4:
+        raise EditError(
+            f"Only {len(shared)} of the source's {len(source.names)} markers have a place on {character.name!r}.",
+            "Name a landmark file that says which vertex carries which marker.",
+        )
+    placed, columns = placed.pick(shared), [source.names.index(name) for name in shared]
+    rest, deltas = placed.rest(character), placed.deltas(character)
+    warp = Warp(rest, source.neutral[columns], shared)
+    in_source = (warp(rest + deltas) - warp(rest)).reshape(len(SHAPES), -1).T
+    shapes = np.flatnonzero(np.linalg.norm(deltas, axis=2).max(axis=1) >= UNSEEN_MM)
+    motion, believed = bridge(source.displacements[:, columns])
+    gaps = Gaps(character)
+    sizes = source.gaps[:, [GAPS.index(gap) for gap in gaps.gaps]]
+    return Correspondence(
+        basis=np.ascontiguousarray(in_source[:, shapes]),
+        shapes=shapes,
+        motion=motion.reshape(len(motion), -1),
+        believed=None if (believed == 1).all() else np.repeat(believed, 3, axis=1),
+        gap_rows=gaps.rows[:, shapes],
+        gap_places=_gap_places(gaps, sizes),
+        closedness=closedness(sizes, gaps.gaps),
+    )
+
+
+def _gap_places(gaps: Gaps, sizes: Array) -> Array:
+    """Return the change of gap vectors, (frames, 3g) mm, that makes them a little narrower than given, (frames, g) mm."""
+    towards = gaps.rest / np.maximum(np.linalg.norm(gaps.rest, axis=1, keepdims=True), 1e-9)
+    wanted = TIGHTER * np.where(np.isfinite(sizes), sizes, 0.0)[..., None] * towards
+    return np.asarray((wanted - gaps.rest).reshape(len(sizes), -1))
+
+
+def with_jaw(pair: Correspondence) -> Correspondence:
+    """Return the pair with mouthClose taking the jaw along: bounds then keep lips from closing further than it opens."""
+    jaw, close = _jaw_and_close(pair)
+    basis, gap_rows = pair.basis.copy(), pair.gap_rows.copy()
+    basis[:, close] += basis[:, jaw]
+    gap_rows[:, close] += gap_rows[:, jaw]
+    return replace(pair, basis=basis, gap_rows=gap_rows)
+
+
+def without_jaw(pair: Correspondence, weights: Array) -> Array:
+    """Return weights, (frames, m), of the pair itself from those of `with_jaw`."""
+    jaw, close = _jaw_and_close(pair)
+    apart = weights.copy()
+    apart[:, jaw] += apart[:, close]
+    return apart
+
+
+def _jaw_and_close(pair: Correspondence) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Return the columns of jawOpen and mouthClose, both empty where the target lacks either."""
+    columns = [np.flatnonzero(pair.shapes == SHAPE_INDEX[name]) for name in ("jawOpen", "mouthClose")]
+    both = min(len(column) for column in columns)
+    return columns[0][:both], columns[1][:both]
+
+
+def match(pair: Correspondence, fps: float, matching: Matching) -> Array:
+    """Return weights, (frames, m), by movement matching."""
+    weights = without_jaw(pair, _match(with_jaw(pair), fps, matching))
+    if matching.bounds is not None:
+        weights = np.clip(weights, matching.bounds.low, matching.bounds.high)  # the jaw, where both parts are large
+    return weights
+
+
+def _match(pair: Correspondence, fps: float, matching: Matching) -> Array:
+    per_frame = (MODEL_FPS / fps) ** 2  # a velocity per frame is smaller at a higher rate; what holds places follows it
+    prior, frames = pair.prior, len(pair.motion)
+    beta = matching.beta * per_frame
+    rows, places = pair.basis, pair.motion
+    weights = np.full(len(rows), beta)
+    closed = matching.closure * per_frame * np.repeat(pair.closedness, 3, axis=1)
+    if closed.any():
+        rows = np.vstack([rows, pair.gap_rows])
+        places = np.hstack([places, pair.gap_places])
+        weights = np.hstack([np.broadcast_to(weights, (frames, len(weights))), closed])
+    alpha = matching.alpha * per_frame * prior.scale(pair.basis)
+    system = System(pair.basis, frames, prior, alpha, Position(rows, weights), pair.believed)
+    return MovementMatcher(system, bounds=matching.bounds).solve(pair.motion, places=places)
+
+
+def retarget(
+    source: Source, character: Character, *, layout: Layout | None = None, matching: Matching | None = None
+) -> Take:
+    """Return the take that moves a character as the source moves.
+
+    Parameters
+    ----------
+    source : from `source.from_take` or `source.from_markers`
+    character : the target
+    layout : which of its vertices carries which marker; None for the 54 standard ones
+    matching : what is respected
+
+    What no marker tells of (gaze, tongue) is carried over by name; head rotation and lost frames are the source's.
+    Raises `EditError` as `correspond` does.
+    """
+    pair = correspond(source, character, layout)
+    weights = source.take.weights.copy()
+    weights[:, pair.shapes] = match(pair, source.take.fps, matching or Matching())
+    return replace(source.take, weights=weights, origin=None)

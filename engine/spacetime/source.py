@@ -1,0 +1,149 @@
+"""What is carried to another head: marker motion with the head still, closures, and what no marker shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from engine.character import Character
+from engine.errors import EditError
+from engine.formats.markers import Markers
+from engine.spacetime.align import HeadMotion, check_points, stillest
+from engine.spacetime.closure import GAPS, Gaps
+from engine.spacetime.denoise import denoise
+from engine.spacetime.layout import Layout, standard
+from engine.take import SHAPE_INDEX, Array, Mask, Take, runs
+
+_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
+# Pairs of markers that meet, by gap. Lip markers sit on the outside: closed is how far apart they are at rest.
+MARKER_GAPS = {
+    "lips": ("lip_upper", "lip_lower"),
+    "lids_left": ("lid_upper_left", "lid_lower_left"),
+    "lids_right": ("lid_upper_right", "lid_lower_right"),
+}
+LIDS_REST_MM = 10.0  # a capture's lids are measured as a share of their distance at rest, this much on a usual face
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A performance as marker displacements from a face at rest, the head held still.
+
+    Attributes
+    ----------
+    displacements : (frames, n, 3) mm; NaN where a marker was not seen
+    neutral : (n, 3) mm, the markers on the face at rest
+    names : of the markers
+    gaps : (frames, gaps) mm, how far lips and lids are apart, in the order of `GAPS`; NaN where unknown
+    take : rate, name, head rotation and lost frames; its weights where they are known, zero otherwise
+    head : head motion taken out, or None where there was none in the markers
+    """
+
+    displacements: Array
+    neutral: Array
+    names: tuple[str, ...]
+    gaps: Array
+    take: Take
+    head: HeadMotion | None = None
+
+    def __len__(self) -> int:
+        return len(self.displacements)
+
+    def part(self, start: int, stop: int) -> Source:
+        """Return frames [start, stop), for looking at settings on a short range."""
+        rows = slice(start, stop)
+        take = replace(
+            self.take,
+            weights=self.take.weights[rows],
+            lost=self.take.lost[rows],
+            rotations=self.take.rotations[rows],
+            origin=None,
+        )
+        return replace(self, displacements=self.displacements[rows], gaps=self.gaps[rows], take=take)
+
+
+def shown(weights: Array) -> Array:
+    """Return weights, (frames, 52), as a character shows them: in 0..1, lips closing no further than the jaw opens."""
+    limited = np.clip(weights, 0.0, 1.0)
+    limited[:, _CLOSE] = np.minimum(limited[:, _CLOSE], limited[:, _JAW])
+    return limited
+
+
+def from_take(take: Take, character: Character, layout: Layout | None = None) -> Source:
+    """Return what the markers of a character do when it plays a take."""
+    placed = layout or standard(character)
+    weights = shown(take.weights)
+    moved = np.einsum("fs,snx->fnx", weights, placed.deltas(character), optimize=True)
+    gaps = Gaps(character)
+    sizes = np.full((len(take), len(GAPS)), np.nan)
+    sizes[:, [GAPS.index(gap) for gap in gaps.gaps]] = gaps.sizes(weights)
+    return Source(moved, placed.rest(character), placed.names, sizes, take)
+
+
+def from_markers(markers: Markers, *, neutral_frame: int = 0) -> Source:
+    """Return a capture with its head motion taken out, measured from a frame in which the face is at rest.
+
+    Raises `EditError` where that frame is not there or lacks markers, and where markers coincide or lie in one plane.
+    """
+    if not 0 <= neutral_frame < len(markers):
+        raise EditError(f"Frame {neutral_frame} is not within the capture, which has {len(markers)} frames.")
+    neutral = markers.positions[neutral_frame]
+    check_points(neutral, markers.names)
+    head = stillest(markers.positions, neutral)
+    still = head.remove(markers.positions)
+    rotations = np.zeros((len(markers), 9))
+    rotations[:, :3] = head.angles()
+    take = Take(
+        np.zeros((len(markers), len(SHAPE_INDEX))),
+        markers.fps,
+        rotations=rotations,
+        name=markers.name,
+        notices=markers.notices,
+    )
+    moved = still_of_noise(still - neutral)
+    sizes = _gaps(bridge(moved)[0] + neutral, neutral, markers)
+    return Source(moved, neutral, markers.names, sizes, take, head)
+
+
+def still_of_noise(displacements: Array) -> Array:
+    """Return displacements, (frames, n, 3) mm, without a tracker's jitter; gaps stay gaps."""
+    return np.where(np.isfinite(displacements), denoise(bridge(displacements)[0]), np.nan)
+
+
+def _gaps(positions: Array, neutral: Array, markers: Markers) -> Array:
+    """Return how far lips and lids are apart, (frames, gaps) mm, as far as the capture has the markers for it."""
+    sizes = np.full((len(positions), len(GAPS)), np.nan)
+    for column, gap in enumerate(GAPS):
+        pair = MARKER_GAPS.get(gap.name, ())
+        if pair and all(name in markers.names for name in pair):
+            upper, lower = (markers.names.index(name) for name in pair)
+            apart = np.linalg.norm(positions[:, upper] - positions[:, lower], axis=1)
+            rest = float(np.linalg.norm(neutral[upper] - neutral[lower]))
+            lips = gap.name == "lips"
+            sizes[:, column] = np.maximum(apart - rest, 0.0) if lips else LIDS_REST_MM * apart / rest
+    return sizes
+
+
+def bridge(displacements: Array) -> tuple[Array, Array]:
+    """Return displacements, (frames, n, 3), with gaps bridged, and how far each step is believed, (frames - 1, n).
+
+    A gap is crossed in a straight line and, the longer it is, the less its steps count: between two sightings g frames
+    apart a marker may have been anywhere. Before the first sighting and after the last it is held and not believed.
+    """
+    filled = displacements.copy()
+    believed = np.ones((len(displacements) - 1, displacements.shape[1]))
+    frames = np.arange(len(displacements))
+    for marker in range(displacements.shape[1]):
+        gone: Mask = ~np.asarray(np.isfinite(displacements[:, marker]).all(axis=1))
+        if not gone.any():
+            continue
+        seen = np.flatnonzero(~gone)
+        if not len(seen):
+            filled[:, marker], believed[:, marker] = 0.0, 0.0
+            continue
+        for axis in range(3):
+            filled[gone, marker, axis] = np.interp(frames[gone], seen, displacements[seen, marker, axis])
+        for start, stop in runs(gone):
+            inside = start > 0 and stop < len(gone)
+            believed[max(start - 1, 0) : stop, marker] = 1 / (stop - start + 1) ** 2 if inside else 0.0
+    return filled, believed

@@ -1,0 +1,89 @@
+"""Loudspeakers for tests."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+
+from app.playback.clock import Pull
+
+BLOCK = 256
+
+
+class SimulatedSink:
+    """A device in simulated time: `run` lets time pass, in which it takes a block whenever one has been played."""
+
+    def __init__(self, rate: int, *, latency_s: float = 0.1) -> None:
+        self.rate, self.latency_s = rate, latency_s
+        self.now = 100.0
+        self.played: list[np.ndarray] = []
+        self.present = True
+        self.closed = False
+        self._pull: Pull | None = None
+        self._due = 0.0
+
+    def time_s(self) -> float:
+        return self.now
+
+    def start(self, pull: Pull) -> bool:
+        if self.present and self._pull is None:
+            self._pull, self._due = pull, self.now
+        return self.present
+
+    def close(self) -> None:
+        self._pull, self.closed = None, True
+
+    @property
+    def pulling(self) -> bool:
+        return self._pull is not None
+
+    def run(self, seconds: float) -> None:
+        end = self.now + seconds
+        while self._pull is not None and self.present and self._due <= end + 1e-12:
+            self.now = max(self.now, self._due)
+            block = self._pull(BLOCK, self._due + self.latency_s)
+            if block is None:
+                self._pull = None
+                break
+            self.played.append(block)
+            self._due += BLOCK / self.rate
+        self.now = end
+
+    def sound(self) -> np.ndarray:
+        return np.concatenate(self.played)
+
+
+class ThreadSink:
+    """A device that pulls in real time from a thread of its own, as a real one does."""
+
+    def __init__(self, rate: int, channels: int) -> None:
+        self.rate = rate
+        self.blocks = 0
+        self.late = 0
+        self._stop = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._pull: Pull | None = None
+
+    def start(self, pull: Pull) -> bool:
+        if self._thread is None or not self._thread.is_alive():
+            self._pull = pull
+            self._thread = threading.Thread(target=self._run, name="loudspeaker")
+            self._thread.start()
+        return True
+
+    def close(self) -> None:
+        self._stop.set()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _run(self) -> None:
+        due = time.perf_counter()
+        while not self._stop.wait(max(0.0, due - time.perf_counter())):
+            assert self._pull is not None
+            if self._pull(BLOCK, due + 0.05) is None:
+                return
+            self.blocks += 1
+            self.late += time.perf_counter() > due + 0.05
+            due += BLOCK / self.rate

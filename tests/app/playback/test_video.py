@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.playback import video
+from app.playback.video import Video
+from engine.errors import FormatError
+from engine.formats.film import beside
+from tests.films import film, shade, sound_only
+
+STEADY_MS = [round(1000 * n / 30) for n in range(90)]
+# as phones film: 30 Hz that drops to 12 and halts for a second
+CHANGING_MS = np.cumsum([0] + [33] * 20 + [83] * 12 + [1000] + [17] * 30).tolist()
+
+
+def shown(reader: Video, time_s: float) -> int | None:
+    frame = reader.frame_at(time_s)
+    return None if frame is None else int(np.median(frame.picture))
+
+
+@pytest.mark.parametrize("times_ms", [STEADY_MS, CHANGING_MS], ids=["steady", "changing"])
+@pytest.mark.parametrize("order", ["forwards", "backwards", "anyhow"])
+def test_the_frame_shown_is_the_last_one_that_has_begun(tmp_path: Path, times_ms, order) -> None:
+    reader = Video(film(tmp_path / "Ä 顔.mp4", times_ms))
+    asked = np.arange(0, times_ms[-1] + 10, 11) / 1000
+    asked = {"forwards": asked, "backwards": asked[::-1], "anyhow": np.random.default_rng(0).permutation(asked)}[order]
+    for time_s in asked:
+        number = int(np.searchsorted(times_ms, time_s * 1000 + 0.001, side="right")) - 1
+        assert abs(shown(reader, time_s) - shade(number)) <= 2, time_s
+    assert shown(reader, -0.1) is None and shown(reader, times_ms[-1] / 1000 + 1) is None
+    reader.close()
+
+
+def test_going_back_and_forth_decodes_each_frame_once(tmp_path: Path, monkeypatch) -> None:
+    reader = Video(film(tmp_path / "a.mp4", STEADY_MS))
+    made: list[int] = []
+    small = video._small
+    monkeypatch.setattr(video, "_small", lambda frame: (made.append(frame.pts), small(frame))[1])
+    for time_s in [*np.arange(0, 2, 0.02), *np.arange(2, 0, -0.02), *np.arange(0, 2, 0.03)]:
+        reader.frame_at(time_s)
+    assert len(made) <= 65
+    reader.close()
+
+
+def test_what_is_kept_is_bounded_and_around_the_playhead(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(video, "CACHE_BYTES", 10 * 64 * 48 * 3)
+    reader = Video(film(tmp_path / "a.mp4", STEADY_MS))
+    for number in (0, 80, *range(40, 53)):
+        assert abs(shown(reader, number / 30 + 0.01) - shade(number)) <= 2
+        assert len(reader._frames) <= 10
+    assert all(abs(start - 52 / 30) < 0.4 for start in reader._starts)
+    reader.close()
+
+
+def test_pictures_are_kept_no_larger_than_they_are_shown(tmp_path: Path) -> None:
+    reader = Video(film(tmp_path / "a.mp4", STEADY_MS[:3], size=(1280, 720)))
+    assert reader.frame_at(0.0).picture.shape == (270, 480, 3)
+    reader.close()
+
+
+def test_hostile_files_give_one_sentence(tmp_path: Path) -> None:
+    good = film(tmp_path / "good.mp4", STEADY_MS).read_bytes()
+    sound_only(tmp_path / "sound.mp4")
+    secret = film(tmp_path / "secret.mp4", STEADY_MS[:5])
+    (tmp_path / "list.mp4").write_text(f"#EXTM3U\n#EXTINF:1,\nfile:{secret}\n#EXT-X-ENDLIST\n")
+    (tmp_path / "joined.mp4").write_text(f"ffconcat version 1.0\nfile '{secret}'\n")
+    (tmp_path / "empty.mov").touch()
+    (tmp_path / "text.mkv").write_text("no video\n" * 100)
+    (tmp_path / "picture.avi").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(900))
+    (tmp_path / "cut.mp4").write_bytes(good[:-400])  # its index is at its end
+    (tmp_path / "folder.mp4").mkdir()
+    names = (
+        "sound.mp4",
+        "list.mp4",
+        "joined.mp4",
+        "empty.mov",
+        "text.mkv",
+        "picture.avi",
+        "cut.mp4",
+        "folder.mp4",
+        "none.mp4",
+    )
+    for name in names:
+        with pytest.raises(FormatError) as caught:
+            Video(tmp_path / name)
+        assert caught.value.sentence.startswith(name), name
+    with pytest.raises(FormatError, match="no moving picture"):
+        Video(tmp_path / "sound.mp4")
+
+
+def test_damage_inside_gives_a_sentence_or_another_frame_and_never_anything_else(tmp_path: Path) -> None:
+    good = film(tmp_path / "good.mp4", STEADY_MS).read_bytes()
+    rng = np.random.default_rng(0)
+    opened = 0
+    for trial in range(40):
+        data = bytearray(good)
+        for at in rng.integers(0, len(data), 30):
+            data[at] = rng.integers(256)
+        path = tmp_path / f"{trial}.mp4"
+        path.write_bytes(data)
+        try:
+            reader = Video(path)
+            opened += 1
+            for time_s in (0.0, 1.5, 0.7, 2.9):
+                reader.frame_at(time_s)
+        except FormatError as error:
+            assert error.sentence.startswith(path.name)
+    assert opened > 5
+
+
+def test_pictures_too_large_to_show_are_refused(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(video, "MAX_PIXELS", 1000)
+    with pytest.raises(FormatError, match="64 × 48"):
+        Video(film(tmp_path / "a.mp4", STEADY_MS[:3]))
+
+
+def test_the_video_beside_a_take_is_found(tmp_path: Path) -> None:
+    assert beside(tmp_path / "Slate_4.csv") is None
+    (tmp_path / "Slate_4.MOV").touch()
+    assert beside(tmp_path / "Slate_4.csv") == tmp_path / "Slate_4.MOV"

@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine.clean.infer import Cleaner, CleanState, bundled
+from engine.take import SHAPES
+
+RNG = np.random.default_rng(1)
+POSE = np.where(RNG.random(len(SHAPES)) < 0.4, RNG.uniform(0.1, 0.9, len(SHAPES)), 0.0).astype(np.float32)
+MOVING = (POSE * (0.6 + 0.4 * np.sin(np.arange(240)[:, None] / 9))).astype(np.float32)
+
+
+def follow(cleaner: Cleaner, frames: list[np.ndarray | None], fps: float = 60.0) -> list[CleanState]:
+    states = [cleaner.start(next(frame for frame in frames if frame is not None))]
+    for frame in frames:
+        states.append(cleaner.step(frame, 1 / fps, states[-1]))
+    return states[1:]
+
+
+@pytest.mark.parametrize("fps", [30.0, 60.0, 120.0])
+def test_a_constant_face_comes_to_rest(fps: float) -> None:
+    shown = np.array([state.shown for state in follow(bundled(), [POSE] * round(40 * fps), fps)])
+    assert np.abs(shown[-round(10 * fps) :] - shown[-1]).max() < 1e-3
+    assert np.abs(shown[-1] - POSE).max() < 0.25
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 100.0, -100.0])
+def test_one_bad_packet_is_no_worse_than_a_lost_one(bad: float) -> None:
+    frames: list[np.ndarray | None] = list(MOVING)
+    spoilt, missing = list(frames), list(frames)
+    spoilt[100], missing[100] = np.where(np.arange(len(SHAPES)) == 17, bad, MOVING[100]), None
+    for one, other in zip(follow(bundled(), spoilt), follow(bundled(), missing), strict=True):
+        np.testing.assert_array_equal(one.shown, other.shown)
+    undisturbed = follow(bundled(), frames)[-1].shown
+    assert np.abs(follow(bundled(), spoilt)[-1].shown - undisturbed).max() < 0.01
+
+
+@pytest.mark.parametrize("gap", [1, 6, 60, 240])
+def test_a_lost_run_is_left_and_ended_without_a_pop(gap: int) -> None:
+    frames = [*MOVING[:120], *[None] * gap, *np.minimum(1, MOVING[120:] + 0.5 * (POSE > 0))]
+    shown = np.array([state.shown for state in follow(bundled(), frames)])
+    speed = np.abs(np.diff(shown, axis=0)).max(axis=1)
+    assert np.isfinite(shown).all() and speed[119 : 119 + gap].max() < 0.1  # no leap as the bridge begins
+    jump = np.abs(shown[119 + gap] - frames[-120]).max()  # how far the bridge is from the face that returns
+    if gap > 1:
+        assert speed[119 + gap] < max(0.35 * jump, 0.05)  # not a frame's leap, as it would be without a landing
+    assert np.abs(shown[-1] - shown[-2]).max() < 0.05
+
+
+def test_the_output_is_always_a_face() -> None:
+    rng = np.random.default_rng(2)
+    wild = [row if rng.random() > 0.2 else None for row in rng.uniform(-0.9, 1.9, (300, len(SHAPES)))]
+    wild[0] = MOVING[0]
+    for state in follow(bundled(), wild):
+        assert state.shown.min() >= 0 and state.shown.max() <= 1
+    stepped = bundled().step(MOVING[0], 0.0, bundled().start(MOVING[0]))
+    assert np.isfinite(stepped.velocity).all()

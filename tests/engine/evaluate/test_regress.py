@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from engine.controls import measure
+from engine.corpus import Piece
+from engine.evaluate import regress
+from engine.performance import demo
+from engine.performance.corpus import synthetic_performances
+from engine.regress.areas import AREAS
+from engine.take import SHAPES
+
+
+@pytest.fixture
+def piece() -> Piece:
+    return Piece(synthetic_performances(0.2, seed=1)[0], True, "someone")
+
+
+def test_the_truth_makes_no_error(piece: Piece) -> None:
+    figures = regress.figures_of(lambda controls: piece.weights, [piece])
+    assert {figures[f"mse_{area.name}"] for area in AREAS} == {0.0}
+    assert figures["closure_tpr_mouth"] == figures["closure_tpr_eyes"] == 1.0
+    assert figures["closure_fpr_mouth"] == figures["closure_fpr_eyes"] == 0.0
+
+
+def test_gaze_is_that_of_the_take_and_weights_are_in_range(piece: Piece) -> None:
+    made = regress.played(lambda controls: np.full((len(controls), len(SHAPES)), 7.0), piece)
+    spoken = np.concatenate([area.shape_columns for area in AREAS])
+    others = np.setdiff1d(np.arange(len(SHAPES)), spoken)
+    np.testing.assert_array_equal(made[:, others], piece.weights[:, others])
+    assert (made[:, spoken] == 1.0).all()
+
+
+def test_a_take_of_the_mouth_alone_is_measured_on_the_mouth_alone(piece: Piece) -> None:
+    mouth = Piece(piece.weights, False, "someone")
+    figures = regress.figures_of(lambda controls: np.zeros((len(controls), len(SHAPES))), [mouth])
+    assert figures["mse_lower"] > 0
+    assert figures["mse_upper"] is figures["mse_eyelids"] is figures["closure_tpr_eyes"] is None
+
+
+def test_any_folder_of_takes_can_be_measured(tmp_path: Path) -> None:
+    shutil.copy(demo.BUNDLED, tmp_path / "someone.csv")
+    rows = regress.table(tmp_path, lambda line: None)
+    assert {"regressor", "full", "hsk16", "ridge"} <= {row["method"] for row in rows}
+    for row in rows:
+        assert 0 <= row["mse_lower"] < 0.1 and 0 <= row["closure_tpr_mouth"] <= 1
+
+
+def test_requests_that_fit_no_face_differ_from_what_was_measured(piece: Piece) -> None:
+    from engine.evaluate.regress_edits import REQUESTS
+
+    controls = measure(piece.weights)
+    for name, ask in REQUESTS.items():
+        asked = ask(controls)
+        assert asked.shape == controls.shape and (asked >= 0).all()
+        assert (np.abs(asked - controls).max() > 1.0) == (name != "none")

@@ -1,0 +1,100 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine.character import bundled
+from engine.errors import EditError
+from engine.formats import read_take
+from engine.manifold.retarget import Retargeter, Settings, retarget_points, retarget_weights, suggest_frames
+from engine.performance import demo
+
+
+def landmarks(frames: slice) -> tuple[np.ndarray, np.ndarray]:
+    """The bundled head's landmarks in the demo take, (frames, n, 3), and at rest."""
+    rest, deltas = bundled().landmark_positions(list(bundled().landmarks))
+    weights = np.clip(read_take(demo.BUNDLED).weights[frames], 0, 1)
+    return rest + np.einsum("fs,spc->fpc", weights, deltas), rest
+
+
+def exaggerated(source: np.ndarray, rest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A head that moves otherwise: wider, and each landmark with its own gain in each direction."""
+    gain = np.random.default_rng(4).uniform(0.4, 1.8, rest.shape)
+    return rest * [1.3, 1, 0.9] + gain * (source - rest), rest * [1.3, 1, 0.9]
+
+
+def test_a_source_that_the_target_copies_needs_one_label() -> None:
+    source, rest = landmarks(slice(0, 100))
+    turned_rest = 1.5 * rest + 10
+    target = turned_rest + 1.5 * (source - rest)
+    made = retarget_points(source, rest, turned_rest, {50: target[50]})
+    np.testing.assert_allclose(made, target, atol=1e-6)
+
+
+def test_more_labels_come_closer_and_every_label_is_met() -> None:
+    source, rest = landmarks(slice(40, 140))
+    target, target_rest = exaggerated(source, rest)
+    errors = []
+    for count in (2, 6, 20):
+        frames = np.linspace(0, 99, count).round().astype(int)
+        made = retarget_points(source, rest, target_rest, {int(f): target[f] for f in frames})
+        np.testing.assert_allclose(made[frames], target[frames], atol=0.02)
+        errors.append(np.linalg.norm(made - target, axis=2).mean())
+    untouched = np.linalg.norm(target_rest + (source - rest) - target, axis=2).mean()
+    assert errors[2] < errors[1] < errors[0] < untouched
+    assert errors[2] < 0.05 * untouched
+
+
+def test_suggested_frames_do_better_than_evenly_spaced_ones() -> None:
+    source, rest = landmarks(slice(0, 240))
+    target, target_rest = exaggerated(source, rest)
+
+    def error(frames: list[int]) -> float:
+        made = retarget_points(source, rest, target_rest, {f: target[f] for f in frames})
+        return float(np.linalg.norm(made - target, axis=2).mean())
+
+    even = [int(f) for f in np.linspace(0, 239, 6).round()]
+    assert error(suggest_frames(source, 6)) < error(even)
+
+
+def test_suggestions_go_on_from_the_labels_there_are() -> None:
+    source, _ = landmarks(slice(0, 200))
+    first = suggest_frames(source, 4)
+    assert suggest_frames(source, 6)[:4] == first
+    assert suggest_frames(source, 2, labelled=first) == suggest_frames(source, 6)[4:]
+    assert len(set(suggest_frames(source, 500))) == 200
+
+
+def test_a_long_take_is_solved_at_spread_frames_and_the_rest_follows_its_patch() -> None:
+    source, rest = landmarks(slice(0, 240))
+    target, target_rest = exaggerated(source, rest)
+    labels = {f: target[f] for f in range(0, 240, 20)}
+    whole = retarget_points(source, rest, target_rest, labels)
+    spread = retarget_points(source, rest, target_rest, labels, Settings(at_once=120))
+    errors = [np.linalg.norm(made - target, axis=2).mean() for made in (whole, spread)]
+    np.testing.assert_allclose(spread[list(labels)], target[list(labels)], atol=0.02)
+    assert errors[1] < 1.5 * errors[0]
+
+
+def test_weights_of_a_target_with_shapes() -> None:
+    take = read_take(demo.BUNDLED)
+    halved = 0.5 * take.weights
+    made = retarget_weights(take, {f: halved[f] for f in suggest_frames(take.weights, 20)})
+    assert np.abs(made.weights - halved).mean() < 0.1 * np.abs(take.weights - halved).mean()
+    assert len(made) == len(take) and made.fps == take.fps
+
+
+@pytest.mark.parametrize(
+    ("labelled", "says"), [([], "no labelled frame"), ([3, 3], "twice"), ([500], "Frame 500"), ([-1], "Frame -1")]
+)
+def test_unusable_labels_are_named(labelled: list[int], says: str) -> None:
+    source = np.random.default_rng(0).random((40, 6))
+    with pytest.raises(EditError, match=says):
+        Retargeter(source, source, np.array(labelled, np.int64))
+
+
+def test_a_source_with_gaps_is_refused() -> None:
+    source = np.random.default_rng(0).random((40, 6))
+    source[3, 2] = np.nan
+    with pytest.raises(EditError, match="finite"):
+        Retargeter(source, source, np.array([0]))

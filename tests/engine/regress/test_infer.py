@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+
+from engine.regress.areas import AREAS, EXTENDED_AREAS
+from engine.regress.infer import Regressor
+from engine.regress.network import AreaNetwork, UNetConfig
+from engine.take import SHAPES
+
+
+@pytest.fixture
+def regressor() -> Regressor:
+    """Networks with random weights everywhere, so that every path through them counts."""
+    torch.manual_seed(4)
+    networks = {}
+    for area in (*AREAS, *EXTENDED_AREAS):
+        inputs, outputs = len(area.controls), len(area.shape_columns)
+        network = AreaNetwork(UNetConfig(inputs, outputs), UNetConfig(outputs, outputs))
+        for unet in (network.regressor, network.autoencoder):
+            torch.nn.init.normal_(unet.last.weight, std=0.3)
+        network.regressor.scale.fill_(20.0)
+        networks[area.name] = network
+    return Regressor(networks)
+
+
+@pytest.mark.parametrize("controls", [8, 14])
+@pytest.mark.parametrize("full", [True, False])
+@pytest.mark.parametrize(("start", "stop"), [(0, 5), (100, 101), (97, 160), (233, 251), (0, 251)])
+def test_a_range_equals_the_whole_take(regressor: Regressor, start: int, stop: int, full: bool, controls: int) -> None:
+    curves = np.random.default_rng(1).uniform(0, 50, (251, controls))
+    whole = regressor.infer(curves, full=full)[start:stop]
+    np.testing.assert_allclose(regressor.infer_range(curves, start, stop, full=full), whole, atol=1e-5)
+    assert np.ptp(whole) > 0.01
+
+
+def test_the_lids_leave_gaze_alone(regressor: Regressor) -> None:
+    controls = np.random.default_rng(2).uniform(0, 50, (40, 8))
+    gaze = [index for index, name in enumerate(SHAPES) if name.startswith("eyeLook")]
+    np.testing.assert_array_equal(regressor.infer(controls)[:, gaze], 0.0)
+
+
+def test_extended_controls_change_their_own_shapes_alone(regressor: Regressor) -> None:
+    controls = np.random.default_rng(3).uniform(0, 50, (40, 14))
+    without, given = regressor.infer(controls[:, :8]), regressor.infer(controls)
+    spoken = np.unique(np.concatenate([area.shape_columns for area in EXTENDED_AREAS]))
+    others = np.setdiff1d(np.arange(len(SHAPES)), spoken)
+    np.testing.assert_array_equal(given[:, others], without[:, others])
+    assert (np.abs(given[:, spoken] - without[:, spoken]).max(axis=0) > 1e-3).all()

@@ -1,0 +1,132 @@
+"""The power user: raw weights, sketching, scaling in value and time, copy and paste, Butterworth."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
+from app.main_window import MainWindow
+from engine.controls import CONTROL_INDEX
+from engine.take import SHAPE_INDEX
+from tests.journeys.conftest import settled
+
+LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+LIPS, JAW = CONTROL_INDEX["lips_vertical"], FIRST_WEIGHT + SHAPE_INDEX["jawOpen"]
+
+
+def at(window: MainWindow, lane: int, frame: float, value: float) -> QPoint:
+    shown = window.curves.lane(lane)
+    return window.curves.mapFromScene(QPointF(shown.x_of(frame), shown.y_of(value)))
+
+
+def gesture(qtbot: QtBot, window: MainWindow, *points: QPoint) -> None:
+    area, steps = window.curves.viewport(), window.session.undo.index()
+    QTest.mouseMove(area, points[0])
+    QTest.mousePress(area, LEFT, PLAIN, points[0])
+    for point in points[1:]:
+        QTest.mouseMove(area, point)
+        qtbot.waitUntil(lambda: window.session.draft is not None, timeout=10_000)
+    QTest.mouseRelease(area, LEFT, PLAIN, points[-1])
+    qtbot.waitUntil(lambda: window.session.undo.index() == steps + 1, timeout=10_000)
+    settled(qtbot, window)
+
+
+def test_a_raw_weight_is_dragged_under_its_control(qtbot: QtBot, window: MainWindow) -> None:
+    QTest.keyClick(window, Qt.Key.Key_W)
+    assert JAW in window.session.lanes and set(weights_under(LIPS)) <= set(window.session.lanes)
+    before = window.session.take.weights.copy()
+    settled(qtbot, window)
+    value = float(window.session.curve(JAW)[150])
+    gesture(qtbot, window, at(window, JAW, 150, value), at(window, JAW, 150, value + 0.3))
+    after = window.session.take.weights
+    assert abs(after[150, SHAPE_INDEX["jawOpen"]] - (value + 0.3)) < 0.08
+    others = np.arange(52) != SHAPE_INDEX["jawOpen"]
+    np.testing.assert_array_equal(after[:, others], before[:, others])
+    assert window.session.undo.undoText() == "drag jawOpen"
+    QTest.keyClick(window, Qt.Key.Key_W)
+    assert JAW not in window.session.lanes
+
+
+def test_a_sketch_becomes_the_curve(qtbot: QtBot, window: MainWindow) -> None:
+    QTest.keyClick(window, Qt.Key.Key_D)
+    window.session.set_brush(exact=True)
+    points = [at(window, LIPS, frame, value) for frame, value in ((140, 2.0), (150, 8.0), (160, 8.0), (170, 2.0))]
+    gesture(qtbot, window, *points)
+    reached = window.session.controls[:, LIPS]
+    assert abs(reached[155] - 8.0) < 1.5 and reached[142] < 5.0
+    assert window.session.undo.undoText() == "draw lips apart"
+
+
+def test_a_box_is_scaled_in_value_and_in_time(qtbot: QtBot, window: MainWindow) -> None:
+    QTest.keyClick(window, Qt.Key.Key_S)
+    window.session.set_brush(exact=True)
+    area, session = window.curves.viewport(), window.session
+    QTest.mousePress(area, LEFT, PLAIN, at(window, LIPS, 70, 5.0))
+    QTest.mouseMove(area, at(window, LIPS, 99, 5.0))
+    QTest.mouseRelease(area, LEFT, PLAIN, at(window, LIPS, 99, 5.0))
+    assert session.selection is not None
+    start, stop = session.selection
+    assert abs(start - 70) <= 1 and abs(stop - 100) <= 1
+    peak = session.controls[start:stop, LIPS].max()
+    box = window.curves.lane(LIPS).scene_box()
+    top = window.curves.mapFromScene(QPointF(window.curves.lane(LIPS).x_of((start + stop - 1) / 2), box.top() + 4))
+    gesture(qtbot, window, top, top + QPoint(0, int(box.height() / 4)))
+    assert session.controls[start:stop, LIPS].max() < 0.75 * peak
+    assert session.undo.undoText() == "scale lips apart"
+
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    settled(qtbot, window)
+    before = session.controls[:, LIPS].copy()
+    middle = box.center().y()
+    right = window.curves.mapFromScene(QPointF(window.curves.lane(LIPS).x_of(stop - 0.5), middle))
+    target = window.curves.mapFromScene(QPointF(window.curves.lane(LIPS).x_of(stop - 11), middle))
+    gesture(qtbot, window, right, target)
+    peak_before = start + int(np.argmax(before[start:stop]))
+    peak_after = start + int(np.argmax(session.controls[start:stop, LIPS]))
+    expected = start + (peak_before - start) * (stop - 10 - start) / (stop - start)
+    assert abs(peak_after - expected) <= 2
+    np.testing.assert_array_equal(session.take.weights[stop + 40 :], session.original.weights[stop + 40 :])
+
+
+def test_copy_and_paste_of_a_range(qtbot: QtBot, window: MainWindow) -> None:
+    session = window.session
+    session.select((40, 60))
+    QTest.keyClick(window, Qt.Key.Key_C, Qt.KeyboardModifier.ControlModifier)
+    session.move_playhead(200)
+    QTest.keyClick(window, Qt.Key.Key_V, Qt.KeyboardModifier.ControlModifier)
+    qtbot.waitUntil(lambda: session.undo.count() == 1, timeout=10_000)
+    np.testing.assert_array_equal(session.take.weights[204:216], session.original.weights[44:56])
+    np.testing.assert_array_equal(session.take.weights[220:], session.original.weights[220:])
+
+
+def test_smoothing_is_previewed_then_kept_or_dropped(qtbot: QtBot, window: MainWindow) -> None:
+    session = window.session
+    QTest.keyClick(window, Qt.Key.Key_S)
+    session.select((50, 150))
+    window.smoothing.cutoff.setValue(2.0)
+    qtbot.waitUntil(lambda: session.draft is not None, timeout=10_000)
+    np.testing.assert_array_equal(session.take.weights, session.original.weights)
+    QTest.mouseClick(window.smoothing.drop_button, LEFT)
+    assert session.draft is None and session.undo.count() == 0
+    window.smoothing.cutoff.setValue(3.0)
+    QTest.mouseClick(window.smoothing.keep_button, LEFT)
+    qtbot.waitUntil(lambda: session.undo.count() == 1, timeout=10_000)
+    rough = np.abs(np.diff(session.original.weights[60:140], n=2, axis=0)).sum()
+    assert np.abs(np.diff(session.take.weights[60:140], n=2, axis=0)).sum() < 0.6 * rough
+    outside = np.r_[0:50, 150 : len(session.take)]
+    np.testing.assert_array_equal(session.take.weights[outside], session.original.weights[outside])
+
+
+def test_a_typed_value_is_reached(qtbot: QtBot, window: MainWindow) -> None:
+    window.session.move_playhead(160)
+    window.session.set_brush(exact=True)
+    window.value.value.setFocus()
+    window.value.value.selectAll()
+    QTest.keyClicks(window.value.value, "7.5")
+    QTest.keyClick(window.value.value, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: window.session.undo.count() == 1, timeout=10_000)
+    assert abs(window.session.controls[160, LIPS] - 7.5) < 0.1
+    assert CURVES[LIPS].title in window.session.undo.undoText()

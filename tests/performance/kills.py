@@ -1,0 +1,193 @@
+"""Kills a scripted editing session at random moments and opens what it left: python -m tests.performance.kills 200."""
+
+from __future__ import annotations
+
+import hashlib
+import multiprocessing
+import sys
+import tempfile
+import time
+from dataclasses import replace
+from multiprocessing.connection import Connection
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+from engine.controls import CONTROLS
+from engine.project import Contents, Edit, Project, create, replay
+from engine.take import SHAPES, Take
+
+LONGEST_S = 0.4  # of a session's life
+LATEST = 20  # edits after which a session begins to undo more than it does
+FRAMES = 2000
+SAVED_FRAMES = 8_000  # long enough for a save to take a while
+SAVES = 4  # that a session may come to
+
+
+def fingerprint(contents: Contents) -> str:
+    """Return a text that two projects share only where every edit, undone ones too, is the same."""
+    state = replay(contents)
+    digest = hashlib.sha256(f"{contents.position} {len(contents.edits)} {contents.marks}".encode())
+    for array in (state.take.weights, state.asked, *(edit.weights for edit in contents.edits)):
+        digest.update(array.tobytes())
+    return digest.hexdigest()
+
+
+def edit_until_killed(folder: Path, seed: int, tell: Connection) -> None:
+    """Push, undo and redo edits for ever, telling each state before it is reached and when it is reported safe."""
+    from PySide6.QtCore import QCoreApplication
+
+    from app.commands import EditCommand
+    from app.keeper import Keeper
+    from app.session import Session
+
+    application = QCoreApplication([])
+    rng = np.random.default_rng(seed)
+    session = Session(Take(weights=rng.random((FRAMES, len(SHAPES))), fps=60.0, name="killed"))
+    keeper = Keeper(session, folder)
+    keeper.kept.connect(lambda contents: tell.send(("kept", fingerprint(contents))))
+    keeper.failed.connect(lambda *sentence: tell.send(("failed", " ".join(sentence))))
+    tell.send(("doing", fingerprint(session.contents())))
+    while True:
+        now = session.contents()
+        if session.undo.count() and rng.random() < (0.3 if session.undo.index() < LATEST else 0.9):
+            position = int(rng.integers(0, session.undo.count() + 1))
+            tell.send(("doing", fingerprint(replace(now, position=position))))
+            session.undo.setIndex(position)
+        else:
+            start, length = int(rng.integers(0, FRAMES - 200)), int(rng.integers(1, 200))
+            weights, asked = rng.random((length, len(SHAPES))), rng.random((length, len(CONTROLS)))
+            patch = SimpleNamespace(start=start, stop=start + length, weights=weights, asked=asked, reached=asked)
+            command = EditCommand(session, patch, f"edit {session.undo.count()}")
+            edits = (*now.edits[: now.position], command.edit)
+            tell.send(("doing", fingerprint(replace(now, edits=edits, position=len(edits)))))
+            session.undo.push(command)
+        until = time.perf_counter() + rng.exponential(0.01)
+        while time.perf_counter() < until:
+            application.processEvents()
+
+
+def save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
+    """Edit a project and save copies over one and the same file for ever."""
+    rng = np.random.default_rng(seed)
+    contents = Contents(Take(weights=rng.random((SAVED_FRAMES, len(SHAPES))), fps=60.0, name="killed"))
+    target = folder / "saved.retake"
+    create(target, contents).close()
+    tell.send(("doing", fingerprint(contents)))
+    tell.send(("kept", fingerprint(contents)))
+    project = create(folder / "work.retake", contents)
+    while True:
+        rows = rng.random((60, len(SHAPES))), np.full((60, len(CONTROLS)), np.nan)
+        edits = (*contents.edits, Edit("drag", "an edit", int(rng.integers(0, FRAMES - 60)), *rows))
+        contents = Contents(contents.original, edits, len(edits))
+        tell.send(("doing", fingerprint(contents)))
+        project.put(contents)
+        tell.send(("saving", ""))
+        copy = project.save_as(target)
+        tell.send(("kept", fingerprint(contents)))
+        if rng.random() < 0.5:  # what a program that saved and went on leaves: steps that only the log has
+            undone = replace(contents, position=len(edits) - 1)
+            tell.send(("doing", fingerprint(undone)))
+            copy.put(undone)
+            tell.send(("kept", fingerprint(undone)))
+        copy.close()
+
+
+def start(session: object, folder: Path, seed: int) -> tuple[multiprocessing.process.BaseProcess, Connection]:
+    """Start a session in a process of its own, from a server that has imported everything already."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["app.keeper", "engine.project"])
+    told, tell = context.Pipe(duplex=False)
+    process = context.Process(target=session, args=(folder, seed, tell), daemon=True)
+    process.start()
+    tell.close()
+    return process, told
+
+
+def listen(told: Connection, seconds: float) -> list[tuple[str, str]]:
+    """Return what a session tells within a time."""
+    messages = []
+    until = time.perf_counter() + seconds
+    while (left := until - time.perf_counter()) > 0:
+        if told.poll(left):
+            messages.append(told.recv())
+    return messages
+
+
+def listen_to_saves(told: Connection, rng: np.random.Generator) -> list[tuple[str, str]]:
+    """Return what a session tells until a moment within one of its saves."""
+    messages: list[tuple[str, str]] = []
+
+    def until(kind: str) -> float:
+        while not messages or messages[-1][0] != kind:
+            messages.append(told.recv())
+        return time.perf_counter()
+
+    for _ in range(int(rng.integers(1, SAVES))):
+        took_s = -until("saving") + until("kept")
+    until("saving")
+    return messages + listen(told, float(rng.uniform(0, took_s)))
+
+
+def kill(process: multiprocessing.process.BaseProcess, told: Connection) -> list[tuple[str, str]]:
+    """Kill a session and return what it had told besides."""
+    process.kill()  # SIGKILL
+    process.join()
+    messages = []
+    try:
+        while True:
+            messages.append(told.recv())
+    except (EOFError, OSError):
+        told.close()
+    return messages
+
+
+def may_be_found(messages: list[tuple[str, str]]) -> tuple[list[str], int]:
+    """Return the states that a file may hold after these messages, and how many were reported safe."""
+    reached: list[str] = []
+    safe, reports = 0, 0
+    for kind, text in messages:
+        assert kind != "failed", text
+        if kind == "doing":
+            reached.append(text)
+        elif kind == "kept":
+            safe, reports = reached.index(text, safe), reports + 1
+    return reached[safe:], reports
+
+
+def check(seed: int, folder: Path, *, saving: bool) -> int:
+    """Kill one session and prove that nothing it had reported is lost; returns how many reports it had made."""
+    rng = np.random.default_rng(seed)
+    session = save_until_killed if saving else edit_until_killed
+    process, told = start(session, folder, seed)
+    try:
+        messages = [told.recv()]
+        messages += listen_to_saves(told, rng) if saving else listen(told, float(rng.uniform(0, LONGEST_S)))
+        messages += kill(process, told)
+    finally:
+        process.kill()
+    allowed, reports = may_be_found(messages)
+    paths = [folder / "saved.retake"] if saving else list(folder.glob("*.retake"))
+    assert len(paths) == 1 or (reports == 0 and not paths), paths
+    for path in paths:
+        opened = Project.open(path)
+        found = fingerprint(opened.contents)
+        opened.close()
+        assert found in allowed, f"seed {seed}: an edit that was reported as finished is gone"
+    return reports
+
+
+def main(times: int) -> None:
+    """Kill so many sessions, every other one while it saves, and say what came of it."""
+    reports = []
+    for seed in range(times):
+        with tempfile.TemporaryDirectory() as folder:
+            reports.append(check(seed, Path(folder), saving=seed % 2 == 1))
+    print(f"{times} kills, {sum(reports)} finished steps reported before them, none lost")
+
+
+if __name__ == "__main__":
+    from tests.performance.kills import main  # under its own name, as the sessions' processes know it
+
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 200)
