@@ -18,6 +18,7 @@ from engine.inpaint.infer import Filler, save_filler
 from engine.inpaint.material import Help, Performance, draw, performances, random_gap
 from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, see, six_distances
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.models.threads import one_thread
 from engine.take import MODEL_FPS
 
 Report = Callable[[str], None]
@@ -34,16 +35,16 @@ class Settings:
     batch: int = 16
     rate: float = 1e-3  # of the discriminator, and of the generator at the parting of the ways; twice that before
     shared_steps: int = 1400  # before the ways part: no adversary yet
-    parted_steps: int = 400
+    parted_steps: int = 1300
     filter_pace: float = 0.1  # of the filter's rate to the rest's: it has many inputs
     value_share: float = 30.0  # on means, where the paper sums; with the terms below about as large as the adversary
     velocity_share: float = 30.0
     distance_share: float = 0.1  # per mm
-    adversary_share: float = 0.1
+    adversary_share: float = 0.3
     penalty: float = 10.0
-    spectrum_share: float = 40.0
-    judge_steps: int = 2  # of the discriminator for one of the generator
-    far_share: float = 0.25  # how much truth counts where nothing settles the pose; the rest is left to the adversary
+    spectrum_share: float = 150.0
+    judge_steps: int = 1  # of the discriminator for one of the generator
+    far_share: float = 0.1  # how much truth counts where nothing settles the pose; the rest is left to the adversary
     average: float = 0.995  # of the generator's weights over steps: the network that is kept
     help: Help = field(default_factory=Help)
 
@@ -268,7 +269,8 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
     figures: dict[str, Any] = {}
     for name, adversary in (("inpaint", True), ("inpaint_feedforward", False)):
         trainer = Trainer(material, settings, adversary=adversary)
-        seconds = _run(trainer, out, name, report)
+        with one_thread():
+            seconds = _run(trainer, out, name, report)
         figures[name] = validation_figures(trainer.filler(), validation)
         report(f"{name}: {figures[name]}")
         save_filler(out / f"{name}.safetensors", trainer.filler())
