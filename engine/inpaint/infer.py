@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from engine.inpaint.closures import shut_lips
 from engine.inpaint.gap import Gap, Statistics, ground
 from engine.inpaint.network import Generator, GeneratorConfig
 from engine.models.checkpoint import MODELS, load_model, save_model
@@ -42,7 +43,8 @@ class Filler:
         with torch.inference_mode(), one_thread():
             motion = self.generator(features, noise).numpy().astype(np.float64)
         made = np.clip(under.base + under.rise * motion, 0.0, 1.0)
-        return np.where(np.isnan(gap.known), made, gap.known)
+        known = np.where(np.isnan(gap.known), made, gap.known)
+        return np.stack([shut_lips(one, gap) for one in known])
 
     def _noise(self, seed: int, frames: int) -> torch.Tensor:
         """Noise as in training: the first curve is new at every frame, the others hold all along."""
