@@ -16,7 +16,7 @@ GUIDE_SMOOTHING = 8  # passes; the error of the ground alone falls up to 12 on v
 GUIDE_FRAMES = 2.0  # how far from known frames a guide begins to tell more than they do; of 1 ... 8 on validation takes
 _NEAR_FRAMES = 8.0  # scale on which nearness to known frames is shown to the network
 _SETTLED_FRAMES = 12.0  # how far from known frames motion is still largely settled by them
-_CONTROL_NOISE = 1.0  # mm; what a control curve is trusted to, of 0.1 ... 2 on validation takes
+_CONTROL_NOISE = 0.5  # mm; what a control curve is trusted to, of 0.1 ... 2 on validation takes
 
 FEATURES = 3 * len(SHAPES) + 1 + len(NAMES) + 3 * len(CONTROLS) + 2
 
