@@ -7,11 +7,11 @@ import sys
 
 import typer
 
-from app.cli import character, clean, smooth, spacetime, tables, takes, training
+from app.cli import blind, character, clean, fill, smooth, spacetime, tables, takes, training
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 
-FAMILIES = (takes, smooth, spacetime, clean, character, tables, training)
+FAMILIES = (takes, fill, smooth, spacetime, clean, character, tables, blind, training)
 
 
 def build() -> typer.Typer:

@@ -160,9 +160,8 @@ class Filling(QObject):
 
 
 def _make(request: FillRequest) -> list[Patch]:
-    from engine.inpaint.fill import fill
-
     from engine.editing import Patch
+    from engine.inpaint.fill import fill
 
     span = request.span
     fills = fill(

@@ -16,6 +16,10 @@ Report = Callable[[str], None]
 TABLES: dict[str, str] = {
     "clean": "Tracker noise removed: error, closures and lag at four frame rates (BSS20b tables 1 and 2)",
     "regress": "Control curves to weights: mean squared error, closures (BSBS19 table 1, figure 8)",
+    "inpaint": "Filling spans: error, spectra, closures and seams per length and guidance (BSS20 section 5)",
+    "controls": "Weights from control curves alone, of the whole take (BSS20 table 4)",
+    "asked": "Masked bilabials, blinks and smiles that come back from one pin or viseme",
+    "bezier": "Points that a hand edit would need, and our time (BSS20 table 3)",
     "regress_edits": "Requests that no face fits: how like a recording the result is (BSBS19 section 5.3)",
     "regress_takes": "The regressor on each recorded take, trained on all others",
     "regress_levers": "What each augmentation and loss term does for the regressor",

@@ -158,3 +158,9 @@ def _without(weights: Array, lost: np.ndarray) -> Array:
 def _smooth_step(position: Array) -> Array:
     clipped = np.clip(position, 0.0, 1.0)
     return np.asarray(clipped * clipped * (3 - 2 * clipped))
+
+
+def phones(script: Script) -> list[tuple[float, float, str]]:
+    """Return start, stop in seconds and ARPAbet symbol of each phone, as `perform` plays them."""
+    starts, stops, symbols = _timing(script, np.random.default_rng(script.seed))
+    return [(float(a), float(b), symbol) for a, b, symbol in zip(starts, stops, symbols, strict=True)]

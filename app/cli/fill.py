@@ -1,0 +1,143 @@
+"""`retake fill`: mark a span, get a performance."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, cast
+
+import typer
+
+from engine.errors import EditError, FormatError
+from engine.formats import read_take, write_take
+
+if TYPE_CHECKING:
+    from engine.inpaint.request import Pose
+    from engine.take import Array
+
+
+def fill(
+    take: Annotated[Path, typer.Argument(help="A take: a Live Link Face CSV.", show_default=False)],
+    out: Annotated[Path, typer.Option("-o", "--out", help="The file to write.", show_default=False)],
+    frames: Annotated[
+        list[str] | None, typer.Option(help="First frame and the one after the last, such as 40:60; may be repeated.")
+    ] = None,
+    lost: Annotated[bool, typer.Option("--lost", help="Fill every lost run instead.")] = False,
+    region: Annotated[str, typer.Option(help="face, lower, upper, eyes, left or right.")] = "face",
+    pin: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A pose to go through: 50:jawOpen=.6,mouthFunnel=.2, or 50:OTHER.csv@FRAME; may be repeated."
+        ),
+    ] = None,
+    guide: Annotated[Path | None, typer.Option(help="A take of the same rate to follow roughly.")] = None,
+    guide_offset: Annotated[int, typer.Option(help="Guide frame minus take frame.")] = 0,
+    visemes: Annotated[
+        Path | None, typer.Option(help="What is said when: a TextGrid, or Rhubarb's TSV, XML or JSON.")
+    ] = None,
+    control: Annotated[
+        list[str] | None,
+        typer.Option(help="An asked curve in mm: lips_vertical=3, =40:3,60:12 by frame, or a file of numbers."),
+    ] = None,
+    style: Annotated[str, typer.Option(help="auto, bridge (a smooth curve) or perform.")] = "auto",
+    seed: Annotated[int, typer.Option(help="Which of the many possible motions.")] = 0,
+    variants: Annotated[int, typer.Option(min=1, max=100, help="How many; each is written to a file of its own.")] = 1,
+) -> None:
+    """Fill a span with believable motion, steered by as much or as little as is given."""
+    from engine.editing import parse_frames
+    from engine.formats.cues import read_cues
+    from engine.inpaint.fill import fill_spans, lost_spans
+    from engine.inpaint.request import Request, Style, merged_pins
+
+    if bool(frames) == lost:
+        raise EditError("Say what to fill.", "Give --frames A:B, or --lost for every lost run.")
+    opened = read_take(take)
+    spans = lost_spans(opened) if lost else [parse_frames(text, opened) for text in frames or []]
+    if not spans:
+        raise EditError(f"{opened.name} has no lost frames.", "Give --frames A:B to fill something else.")
+    request = Request(
+        frames=spans[0],
+        region=region,
+        pins=merged_pins([_pin(text) for text in pin or []]),
+        guide=read_take(guide) if guide else None,
+        guide_offset=guide_offset,
+        visemes=tuple(read_cues(visemes)) if visemes else (),
+        controls=_controls(control or [], spans),
+        style=cast(Style, style),  # checked with the rest
+        lost=lost,
+    )
+    filled = [fill_spans(opened, spans, request, seed=seed + index) for index in range(variants)]
+    for index, one in enumerate(filled):
+        path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
+        write_take(one, path)
+        typer.echo(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
+
+
+def _said(spans: list[tuple[int, int]]) -> str:
+    if len(spans) > 4:
+        return f"{len(spans)} spans, {sum(stop - start for start, stop in spans)} frames"
+    return "frames " + ", ".join(f"{start}:{stop}" for start, stop in spans)
+
+
+def _pin(text: str) -> tuple[int, Pose]:
+    frame, _, what = text.partition(":")
+    if not frame.strip().isdigit() or not what:
+        raise EditError(
+            f"{text!r} is not a pin.", "Write the frame, a colon and weights: 50:jawOpen=.6 - or a take file."
+        )
+    if "=" in what:
+        return int(frame), dict(_weight(part) for part in what.split(","))
+    name, _, which = what.partition("@")
+    other = read_take(Path(name))
+    index = int(which) if which.isdigit() else 0
+    if index >= len(other):
+        raise EditError(f"{other.name} has no frame {index}: it has {len(other)} frames.")
+    return int(frame), other.weights[index]
+
+
+def _weight(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    return name.strip(), _number(value)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise EditError(f"{text!r} is not a number.") from None
+
+
+def _controls(texts: list[str], spans: list[tuple[int, int]]) -> dict[str, Array | float]:
+    curves: dict[str, Array | float] = {}
+    for text in texts:
+        name, _, curve = text.partition("=")
+        if not curve:
+            raise EditError(f"{text!r} is not a control curve.", "Write its name, = and millimetres: lips_vertical=3.")
+        if name in curves:
+            raise EditError(f"The control {name} is asked for twice.", "Keep one of the two curves.")
+        curves[name] = _curve(curve, spans)
+    return curves
+
+
+def _curve(text: str, spans: list[tuple[int, int]]) -> Array | float:
+    """Return a constant, a line through frame:mm points, or the numbers in a file, one per frame of the span."""
+    import numpy as np
+
+    if Path(text).is_file():
+        try:
+            numbers: Array = np.loadtxt(text, ndmin=1)
+            return numbers
+        except (ValueError, OSError, UnicodeDecodeError):
+            raise FormatError(f"{Path(text).name} is not a list of numbers.") from None
+    if ":" not in text:
+        return _number(text)
+    if len(spans) > 1:
+        raise EditError("A curve by frame is for one span.", "Fill the spans one after the other.")
+    points = sorted((_number(part.partition(":")[0]), _number(part.partition(":")[2])) for part in text.split(","))
+    at, values = np.array(points).T
+    line: Array = np.interp(np.arange(*spans[0]), at, values)
+    return line
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(fill)

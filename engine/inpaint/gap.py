@@ -1,0 +1,173 @@
+"""What is known about a stretch of motion with a hole in it, and the plain face that the network starts from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.controls import CONTROLS, bundled_measurer
+from engine.inpaint.seams import bridge, distance_frames
+from engine.speech.visemes import NAMES
+from engine.take import SHAPES, Array
+
+RISE_FRAMES = 2.5  # how soon beside a known frame the network may move the face: value and slope stay as they are there
+GUIDE_SMOOTHING = 8  # passes; the error of the ground alone falls up to 12 on validation takes, but blinks grow blunt
+GUIDE_FRAMES = 2.0  # how far from known frames a guide begins to tell more than they do; of 1 ... 8 on validation takes
+_NEAR_FRAMES = 8.0  # scale on which nearness to known frames is shown to the network
+_SETTLED_FRAMES = 12.0  # how far from known frames motion is still largely settled by them
+_CONTROL_NOISE = 0.5  # mm; what a control curve is trusted to, of 0.1 ... 2 on validation takes
+
+FEATURES = 3 * len(SHAPES) + 1 + len(NAMES) + 3 * len(CONTROLS) + 2
+
+
+@dataclass(frozen=True, eq=False)
+class Gap:
+    """A stretch of motion at the model rate with what is known of it; NaN is what is not.
+
+    Attributes
+    ----------
+    known : (frames, 52) weights: context and pins; NaN where motion is to be made
+    guide : (frames, 52) weights of a rough performance to follow
+    visemes : (frames, 18) one-hot, all zero where nothing is said of the frame
+    controls : (frames, 8) mm, asked control curves
+    """
+
+    known: Array
+    guide: Array
+    visemes: Array
+    controls: Array
+
+
+def gap_of(
+    known: Array, *, guide: Array | None = None, visemes: Array | None = None, controls: Array | None = None
+) -> Gap:
+    """Return a gap with whatever guidance there is."""
+    frames = len(known)
+    return Gap(
+        known,
+        np.full((frames, len(SHAPES)), np.nan) if guide is None else guide,
+        np.zeros((frames, len(NAMES))) if visemes is None else visemes,
+        np.full((frames, len(CONTROLS)), np.nan) if controls is None else controls,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Statistics:
+    """How weights and controls vary together over the training takes.
+
+    Attributes
+    ----------
+    mean, scale : (52,) of the weights
+    rest : (8,) mm, mean of the controls
+    spread : (8, 8) mm^2, covariance of the controls
+    cross : (8, 52) mm, covariance of controls with weights
+    """
+
+    mean: Array
+    scale: Array
+    rest: Array
+    spread: Array
+    cross: Array
+
+
+def statistics_of(weights: Array) -> Statistics:
+    """Return the statistics of many faces, (faces, 52)."""
+    controls = bundled_measurer().measure(weights)
+    mean, rest = weights.mean(axis=0), controls.mean(axis=0)
+    off, away = weights - mean, controls - rest
+    return Statistics(
+        mean, np.maximum(weights.std(axis=0), 0.02), rest, away.T @ away / len(away), away.T @ off / len(away)
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """What the network adds to, and what it is shown.
+
+    Attributes
+    ----------
+    base : (frames, 52) a smooth face through all that is known, bent to guide and controls
+    rise : (frames, 52) in 0..1, how much of the network's motion is let in: none at known values
+    features : (frames, FEATURES) float32
+    certainty : (frames,) in 0..1, how far what is known settles the pose: one beside known frames and where guided
+    """
+
+    base: Array
+    rise: Array
+    features: np.ndarray
+    certainty: Array
+
+
+def ground(gap: Gap, statistics: Statistics) -> Ground:
+    """Return the face under a fill: through seams and pins with their slopes, along the guide, bent to the controls.
+
+    With this under it the network's output needs no reconstruction term outside the mask (the first half of BSS20
+    equation 1): what is known stays as it is, to the last bit.
+    """
+    distance = distance_frames(gap.known)
+    rise = 1 - np.exp(-((distance / RISE_FRAMES) ** 2))
+    base = _along_guide(gap, distance, statistics)
+    base = np.where(np.isnan(gap.known), _bent(base, rise, gap.controls, statistics), gap.known)
+    nearest = _nearest(gap, distance)
+    guided = np.isfinite(gap.guide).any(axis=1) | np.isfinite(gap.controls).any(axis=1) | gap.visemes.any(axis=1)
+    certainty = np.where(guided, 1.0, np.exp(-nearest / _SETTLED_FRAMES))
+    return Ground(base, rise, _features(gap, base, nearest, statistics), certainty)
+
+
+def _nearest(gap: Gap, distance: Array) -> Array:
+    """Return how far each frame is from where some of its unknown shapes are known, (frames,)."""
+    nearest = np.where(np.isnan(gap.known), distance, np.inf).min(axis=1)
+    return np.where(np.isfinite(nearest), nearest, 0.0)
+
+
+def _along_guide(gap: Gap, distance: Array, statistics: Statistics) -> Array:
+    """Return curves through all that is known, along the guide without its jitter, and at rest where nothing is known."""
+    plain = np.where(np.isnan(gap.known).all(axis=0), statistics.mean, bridge(gap.known))
+    if not np.isfinite(gap.guide).any():
+        return plain
+    guided = smoothed(np.where(np.isfinite(gap.guide), gap.guide, plain), GUIDE_SMOOTHING)
+    trust = np.exp(-GUIDE_FRAMES / np.maximum(distance, 1e-3))
+    return plain + trust * (guided + bridge(gap.known - guided) - plain)
+
+
+def smoothed(curves: Array, passes: int) -> Array:
+    """Return curves, (frames, n), after so many passes of the filter 1/4, 1/2, 1/4."""
+    for _ in range(passes):
+        held = np.concatenate([curves[:1], curves, curves[-1:]])
+        curves = (held[:-2] + 2 * held[1:-1] + held[2:]) / 4
+    return curves
+
+
+def _bent(base: Array, rise: Array, controls: Array, statistics: Statistics) -> Array:
+    """Move a face towards asked controls by linear regression on those that are asked for."""
+    asked = np.isfinite(controls)
+    missing = np.where(asked, controls - bundled_measurer().measure(base), 0.0)
+    moved = np.array(base)
+    for pattern in np.unique(asked, axis=0):
+        if pattern.any():
+            rows, columns = (asked == pattern).all(axis=1), np.flatnonzero(pattern)
+            spread = statistics.spread[np.ix_(columns, columns)] + _CONTROL_NOISE**2 * np.eye(len(columns))
+            gain = np.linalg.solve(spread, statistics.cross[columns])
+            moved[rows] += rise[rows] * (missing[np.ix_(rows, columns)] @ gain)
+            moved[rows] = np.where(rise[rows] > 0, np.clip(moved[rows], 0.0, 1.0), base[rows])
+    return moved
+
+
+def _features(gap: Gap, base: Array, nearest: Array, statistics: Statistics) -> np.ndarray:
+    measured = bundled_measurer().measure(base)
+    unit = np.sqrt(np.diag(statistics.spread))
+    asked = np.isfinite(gap.controls)
+    parts = [
+        (base - statistics.mean) / statistics.scale,
+        np.gradient(base, axis=0) / statistics.scale if len(base) > 1 else np.zeros_like(base),
+        np.isnan(gap.known),
+        np.isfinite(gap.guide).any(axis=1, keepdims=True),
+        gap.visemes,
+        (measured - statistics.rest) / unit,
+        np.where(asked, gap.controls - measured, 0.0) / unit,
+        asked,
+        np.exp(-nearest / _NEAR_FRAMES)[:, None],
+        np.log1p(nearest)[:, None] / 4,
+    ]
+    return np.concatenate(parts, axis=1).astype(np.float32)

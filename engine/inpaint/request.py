@@ -1,0 +1,143 @@
+"""What a fill is asked to do, and whether it fits the take: every mistake is one sentence, before anything is made."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from engine.controls import control_index
+from engine.errors import EditError
+from engine.inpaint.regions import region_shapes
+from engine.speech.visemes import Cue, class_of
+from engine.take import SHAPE_INDEX, SHAPES, Array, Take
+
+Pose = Mapping[str, float] | Array
+LOWEST, HIGHEST = -0.1, 1.1  # recorded weights stray a little outside 0..1
+Style = Literal["auto", "bridge", "perform"]
+STYLES: tuple[Style, ...] = ("auto", "bridge", "perform")
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """What steers a fill; see `fill` for the meaning of each. `lost` allows spans of a single frame."""
+
+    frames: tuple[int, int]
+    region: str = "face"
+    pins: Mapping[int, Pose] = field(default_factory=dict)
+    guide: Take | None = None
+    guide_offset: int = 0
+    visemes: tuple[Cue, ...] = ()
+    controls: Mapping[str, Array | float] = field(default_factory=dict)
+    style: Style = "auto"
+    lost: bool = False
+
+    def poses(self) -> dict[int, Array]:
+        """Return pins as (52,) weights by frame, NaN where a shape is free."""
+        return {frame: _pose(pose) for frame, pose in self.pins.items()}
+
+
+def merged_pins(pins: Iterable[tuple[int, Pose]]) -> dict[int, Pose]:
+    """Return pins by frame, those of one frame joined; raises `EditError` where two disagree."""
+    merged: dict[int, Array] = {}
+    for frame, pose in pins:
+        new = _pose(pose)
+        old = merged.get(frame, np.full(len(SHAPES), np.nan))
+        clash = np.isfinite(old) & np.isfinite(new) & (old != new)
+        if clash.any():
+            shape = SHAPES[int(np.flatnonzero(clash)[0])]
+            raise EditError(f"Two pins at frame {frame} ask for different values of {shape}.", "Keep one of them.")
+        merged[frame] = np.where(np.isfinite(new), new, old)
+    return dict(merged)
+
+
+def checked(request: Request, take: Take) -> Request:
+    """Return a request that fits a take; raises `EditError` with one sentence where it does not."""
+    _check_span(request, take)
+    _check_pins(request)
+    if request.guide is not None:
+        _check_guide(request, request.guide, take)
+    for cue in request.visemes:
+        class_of(cue.label)
+        if not (np.isfinite([cue.start_s, cue.stop_s]).all() and cue.start_s <= cue.stop_s):
+            raise EditError(f"The viseme {cue.label!r} ends before it begins.")
+    length = request.frames[1] - request.frames[0]
+    return replace(request, controls={name: _curve(name, c, length) for name, c in request.controls.items()})
+
+
+def _check_span(request: Request, take: Take) -> None:
+    start, stop = request.frames
+    if not 0 <= start < stop <= len(take):
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
+    if stop - start < 2 and not request.lost:
+        raise EditError("A span of one frame cannot be filled.", "Mark at least two frames.")
+    if request.style not in STYLES:
+        raise EditError(f"There is no style called {request.style!r}.", f"Styles are: {', '.join(STYLES)}.")
+    whole = (start, stop) == (0, len(take)) and region_shapes(request.region).all()
+    if whole and not (request.pins or request.guide is not None or request.visemes or request.controls):
+        raise EditError(
+            "The span covers the whole take and nothing says what should happen in it.",
+            "Leave some frames outside it, or add a pin, a guide, visemes or a control curve.",
+        )
+
+
+def _check_pins(request: Request) -> None:
+    start, stop = request.frames
+    region = region_shapes(request.region)
+    for frame, pose in request.poses().items():
+        if not start <= frame < stop:
+            raise EditError(f"The pin at frame {frame} lies outside the span {start}:{stop}.")
+        pinned = np.isfinite(pose)
+        if not (pinned & region).any():
+            raise EditError(f"The pin at frame {frame} moves nothing in the region {request.region!r}.")
+        outside = pinned & ((pose < LOWEST) | (pose > HIGHEST))
+        if outside.any():
+            shape = SHAPES[int(np.flatnonzero(outside)[0])]
+            raise EditError(f"The pin at frame {frame} sets {shape} outside 0..1.")
+
+
+def _check_guide(request: Request, guide: Take, take: Take) -> None:
+    if abs(guide.fps / take.fps - 1) > 1e-3:
+        raise EditError(
+            f"The guide runs at {guide.fps:.5g} frames per second, the take at {take.fps:.5g}.",
+            "Use a guide of the same rate.",
+        )
+    first, last = request.frames[0] + request.guide_offset, request.frames[1] + request.guide_offset
+    if first < 0 or last > len(guide):
+        raise EditError(
+            f"The guide has {len(guide)} frames and does not cover the span, which needs its frames {first}:{last}.",
+            "Use a longer guide, or another offset.",
+        )
+    if guide.lost[first:last].all():
+        raise EditError("The guide has no face anywhere in the span.", "Use another guide or another offset.")
+
+
+def _curve(name: str, curve: Array | float, length: int) -> Array:
+    control_index(name)
+    asked = np.asarray(curve, np.float64)
+    if asked.ndim > 1 or asked.size not in (1, length):
+        raise EditError(
+            f"The curve for {name} has {asked.size} values where the span has {length} frames.",
+            "Give one value per frame of the span, or one for all.",
+        )
+    if np.isinf(asked).any() or (asked < 0).any():
+        raise EditError(f"The curve for {name} asks for a distance that is negative or infinite.")
+    return np.array(np.broadcast_to(asked.reshape(-1), (length,)))
+
+
+def _pose(pose: Pose) -> Array:
+    if not isinstance(pose, Mapping):
+        weights = np.asarray(pose, np.float64)
+        if weights.shape != (len(SHAPES),):
+            raise EditError(f"A pinned pose needs {len(SHAPES)} weights, this one has {weights.size}.")
+        return weights
+    weights = np.full(len(SHAPES), np.nan)
+    for shape, value in pose.items():
+        if shape not in SHAPE_INDEX:
+            raise EditError(f"There is no shape called {shape!r}.", "Shapes have ARKit names, such as jawOpen.")
+        if not np.isfinite(value):
+            raise EditError(f"The pin of {shape} is not a finite number.")
+        weights[SHAPE_INDEX[shape]] = value
+    return weights

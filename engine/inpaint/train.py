@@ -1,0 +1,315 @@
+"""Training the filling network (BSS20 section 3.3): first without, then with an adversary; and its twin, without to the end."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from engine.corpus import Piece, split
+from engine.inpaint.gap import Statistics, ground, statistics_of
+from engine.inpaint.infer import Filler, save_filler
+from engine.inpaint.material import Help, Performance, draw, performances, random_gap
+from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, see, six_distances
+from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.models.threads import one_thread
+from engine.take import MODEL_FPS
+
+Report = Callable[[str], None]
+SHARED = "inpaint_shared.partial.safetensors"  # where both ways part
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a training run depends on; the paper's values unless its place says otherwise."""
+
+    seed: int = 0
+    frames: int = 200
+    hidden: int = 128
+    batch: int = 16
+    rate: float = 1e-3  # of the discriminator, and of the generator at the parting of the ways; twice that before
+    shared_steps: int = 1400  # before the ways part: no adversary yet
+    parted_steps: int = 1300
+    filter_pace: float = 0.1  # of the filter's rate to the rest's: it has many inputs
+    value_share: float = 30.0  # on means, where the paper sums; with the terms below about as large as the adversary
+    velocity_share: float = 30.0
+    distance_share: float = 0.1  # per mm
+    adversary_share: float = 0.3
+    penalty: float = 10.0
+    spectrum_share: float = 150.0
+    judge_steps: int = 1  # of the discriminator for one of the generator
+    far_share: float = 0.1  # how much truth counts where nothing settles the pose; the rest is left to the adversary
+    average: float = 0.995  # of the generator's weights over steps: the network that is kept
+    help: Help = field(default_factory=Help)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Windows of truth and the ground under their fills; all (batch, frames, ...) float32."""
+
+    truth: Tensor
+    base: Tensor
+    rise: Tensor
+    features: Tensor
+    hole: Tensor
+    certainty: Tensor
+
+
+def make_batch(
+    material: Sequence[Performance], statistics: Statistics, settings: Settings, rng: np.random.Generator, size: int
+) -> Batch:
+    """Draw windows, tear holes and prepare what the generator sees."""
+    rows = []
+    for _ in range(size):
+        truth = draw(material, settings.frames, rng)
+        gap = random_gap(truth, settings.help, rng)
+        under = ground(gap, statistics)
+        hole = np.isnan(gap.known)
+        rows.append((truth.weights, under.base, under.rise, under.features, hole, under.certainty[:, None]))
+    return Batch(*(torch.tensor(np.stack(part), dtype=torch.float32) for part in zip(*rows, strict=True)))
+
+
+def fill_losses(made: Tensor, batch: Batch, distances: torch.nn.Module, settings: Settings) -> dict[str, Tensor]:
+    """Return per-window terms (batch,): values and distances (BSS20 equations 1 and 2) and velocities."""
+    trust = settings.far_share + (1 - settings.far_share) * batch.certainty
+    inside = batch.hole.amax(dim=2, keepdim=True)
+    room = batch.hole.sum(dim=(1, 2)).clamp(min=1)
+    off = (made - batch.truth) * trust
+    apart = (distances(made) - distances(batch.truth)) * inside * trust
+    return {
+        "values": settings.value_share * (off.abs() * batch.hole).sum(dim=(1, 2)) / room,
+        "velocities": settings.velocity_share * off.diff(dim=1).abs().sum(dim=(1, 2)) / room,
+        "distances": settings.distance_share * apart.abs().mean(dim=2).sum(dim=1) / inside.sum(dim=(1, 2)).clamp(min=1),
+    }
+
+
+def spectrum_gap(made: Tensor, batch: Batch, scale: Tensor) -> Tensor:
+    """Return how far the amplitudes of made motion in the holes are from the truth's, whatever their phases.
+
+    Mean over shapes, windows of two lengths and frequencies above zero, in units of the shapes' spread. A fill that
+    moves as much as the truth but at other moments costs nothing here, where an error per frame asks for stillness.
+    """
+    gaps = []
+    for length in (16, 64):
+        taper = torch.hann_window(length)
+        share = batch.hole.unfold(1, length, length // 4).mean(dim=3)  # (batch, windows, 52)
+        amplitudes = []
+        for motion in (made, batch.truth):
+            cut = (motion / scale).unfold(1, length, length // 4)  # (batch, windows, 52, length)
+            power = torch.fft.rfft((cut - cut.mean(dim=3, keepdim=True)) * taper).abs().square()[..., 1:]
+            inside = (power * share[..., None]).sum(dim=1) / share.sum(dim=1)[..., None].clamp(min=1e-6)
+            amplitudes.append(torch.sqrt(inside + 1e-4) / taper.sum())
+        gaps.append((amplitudes[0] - amplitudes[1]).abs().mean())
+    return torch.stack(gaps).mean()
+
+
+class Trainer:
+    """One way of training, with or without an adversary, resumable after any `save`."""
+
+    def __init__(self, material: Sequence[Performance], settings: Settings, *, adversary: bool) -> None:
+        torch.manual_seed(settings.seed)
+        self._material, self.settings, self._adversary = material, settings, adversary
+        self.statistics = statistics_of(np.concatenate([one.weights for one in material]))
+        self._distances = six_distances()
+        self.generator = Generator(GeneratorConfig(hidden=settings.hidden))
+        self.generator.scale.copy_(torch.tensor(self.statistics.scale))
+        self.kept = torch.optim.swa_utils.AveragedModel(
+            self.generator,
+            multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(settings.average),  # type: ignore[no-untyped-call]
+        )
+        self.discriminator = Discriminator(settings.frames)
+        self.discriminator.scale.copy_(self._face_scale())
+        rest = [value for name, value in self.generator.named_parameters() if not name.startswith("filter")]
+        groups: list[dict[str, Any]] = [{"params": rest}, {"params": self.generator.filter.parameters()}]
+        self._make = torch.optim.Adam(groups, lr=settings.rate)
+        self._judge = torch.optim.Adam(self.discriminator.parameters(), lr=settings.rate, betas=(0.5, 0.9))
+        self.step = 0
+
+    def _face_scale(self) -> Tensor:
+        sample = torch.tensor(np.concatenate([one.weights for one in self._material[::5]]), dtype=torch.float32)
+        return see(sample[None], self._distances)[0].std(dim=0).clamp(min=0.005)
+
+    def _seen(self, weights: Tensor) -> Tensor:
+        """Return what the discriminator is fed, in units of its own spread."""
+        return see(weights, self._distances) / self.discriminator.scale
+
+    def advance(self) -> dict[str, float]:
+        """Take one step; returns every loss term by name."""
+        settings, part = self.settings, self.step >= self.settings.shared_steps
+        self.generator.filter.requires_grad_(part)
+        rng = np.random.default_rng([settings.seed, self.step])
+        torch.manual_seed(settings.seed * 1_000_003 + self.step)
+        against = part and self._adversary
+        self._pace(part)
+        batch = make_batch(
+            self._material, self.statistics, settings, rng, settings.batch // 2 if against else settings.batch
+        )
+        made = self._generate(batch)
+        losses = fill_losses(made, batch, self._distances, settings if against else _trusting(settings))
+        terms = {name: term.mean() for name, term in losses.items()}
+        if against:
+            terms = self._against(batch, made, losses)
+        self._make.zero_grad()
+        torch.stack([term for name, term in terms.items() if not name.startswith("judge")]).sum().backward()  # type: ignore[no-untyped-call]
+        torch.nn.utils.clip_grad_norm_(self.generator.parameters(), 1.0)
+        self._make.step()
+        self.kept.update_parameters(self.generator)
+        self.step += 1
+        return {name: float(term.detach()) for name, term in terms.items()}
+
+    def _pace(self, part: bool) -> None:
+        """Halve the rate once the ways part and let it fall to a tenth of that by the end."""
+        done = (self.step - self.settings.shared_steps) / max(1, self.settings.parted_steps)
+        rate = self.settings.rate * (1 - 0.9 * done if part else 2.0)
+        for group, pace in zip(self._make.param_groups, (1.0, self.settings.filter_pace), strict=True):
+            group["lr"] = rate * pace
+
+    def _generate(self, batch: Batch) -> Tensor:
+        noise = torch.randn(len(batch.truth), 1, self.generator.config.noise).repeat(1, batch.truth.shape[1], 1)
+        noise[..., 0] = torch.randn(noise.shape[:2])  # one curve is new at every frame, the others hold all along
+        motion = self.generator(batch.features, noise)
+        made: Tensor = batch.base + batch.rise * motion
+        return made
+
+    def _against(self, batch: Batch, made: Tensor, losses: dict[str, Tensor]) -> dict[str, Tensor]:
+        """Let the discriminator learn, then return the generator's terms with its score (equations 2 and 3).
+
+        Each window is filled twice with different noise and only the better of the two is held to the truth by its full
+        amount: where several motions are believable, that leaves room for more than one of them.
+        """
+        other = self._generate(batch)
+        others = fill_losses(other, batch, self._distances, self.settings)
+        real, hole = self._seen(batch.truth), batch.hole
+        sums = torch.stack([sum(losses.values()), sum(others.values())])  # type: ignore[list-item]
+        best = sums.argmin(dim=0)
+        terms = {
+            name: 0.5 * (0.5 * (term + others[name]) + torch.where(best == 0, term, others[name])).mean()
+            for name, term in losses.items()
+        }
+        fakes = [self._seen(made), self._seen(other)]
+        judged: dict[str, Tensor] = {}
+        for _ in range(self.settings.judge_steps):
+            judged = self._judge_step(real, [fake.detach() for fake in fakes], hole)
+        score = torch.cat([self.discriminator(fake) for fake in fakes]).mean()
+        terms["adversary"] = -self.settings.adversary_share * score
+        apart = torch.stack([spectrum_gap(one, batch, self.generator.scale) for one in (made, other)]).mean()
+        return terms | {"spectrum": self.settings.spectrum_share * apart} | judged
+
+    def _judge_step(self, real: Tensor, fakes: list[Tensor], hole: Tensor) -> dict[str, Tensor]:
+        fake = fakes[0]
+        hinge = (1 - self.discriminator(real)).relu().mean()
+        for one in fakes:
+            hinge = hinge + (1 + self.discriminator(one)).relu().mean() / len(fakes)
+        share = torch.rand(len(real), 1, 1)
+        between = (share * real + (1 - share) * fake).requires_grad_()
+        slope = torch.autograd.grad(self.discriminator(between).sum(), between, create_graph=True)[0]
+        masked = slope * hole.amax(dim=2, keepdim=True)
+        penalty = self.settings.penalty * (masked.flatten(1).norm(dim=1) - 1).square().mean()
+        self._judge.zero_grad()
+        (hinge + penalty).backward()
+        self._judge.step()
+        return {"judge_hinge": hinge.detach(), "judge_penalty": penalty.detach()}
+
+    def filler(self) -> Filler:
+        """Return the averaged network, ready for use."""
+        generator = Generator(self.generator.config)
+        generator.load_state_dict(self.kept.module.state_dict())
+        return Filler(generator, self.statistics)
+
+    def _parts(self) -> dict[str, Any]:
+        return {"generator": self.generator, "kept": self.kept, "discriminator": self.discriminator}
+
+    def save(self, path: Path) -> None:
+        """Write all that `load` needs to go on as if nothing had happened."""
+        tensors: dict[str, Tensor] = {}
+        for name, module in self._parts().items():
+            tensors |= {f"{name}/{key}": value.clone() for key, value in module.state_dict().items()}
+        for name, optimizer in (("make", self._make), ("judge", self._judge)):
+            for index, state in optimizer.state_dict()["state"].items():
+                tensors |= {f"{name}/{index}/{key}": torch.as_tensor(value) for key, value in state.items()}
+        save_model(path, tensors, kind="inpaint-partial", config={"step": self.step, "settings": asdict(self.settings)})
+
+    def load(self, path: Path) -> None:
+        """Go on from a saved state."""
+        tensors, config = load_model(path, kind="inpaint-partial")
+        for name, module in self._parts().items():
+            prefix = f"{name}/"
+            module.load_state_dict({k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)})
+        for name, optimizer in (("make", self._make), ("judge", self._judge)):
+            state: dict[int, dict[str, Tensor]] = {}
+            for key, value in tensors.items():
+                if key.startswith(f"{name}/"):
+                    _, index, field_name = key.split("/")
+                    state.setdefault(int(index), {})[field_name] = value
+            optimizer.load_state_dict({"state": state, "param_groups": optimizer.state_dict()["param_groups"]})
+        self.step = int(config["step"])
+
+
+def _trusting(settings: Settings) -> Settings:
+    """Return settings under which truth counts everywhere: without an adversary nothing else would."""
+    return replace(settings, far_share=1.0)
+
+
+def train(data: Path, out: Path = MODELS, settings: Settings | None = None, report: Report = print) -> dict[str, Any]:
+    """Train the network and its twin without adversary; writes both with their cards, returns validation figures.
+
+    Stop it at any time: it goes on from the last hundred steps. Raises `EngineError` where there are no takes.
+    """
+    from engine.inpaint.validate import validation_figures
+
+    settings = settings or Settings()
+    training, validation, _ = split(data)
+    material = performances(training, settings.help, np.random.default_rng(settings.seed))
+    figures: dict[str, Any] = {}
+    for name, adversary in (("inpaint", True), ("inpaint_feedforward", False)):
+        trainer = Trainer(material, settings, adversary=adversary)
+        with one_thread():
+            seconds = _run(trainer, out, name, report)
+        figures[name] = validation_figures(trainer.filler(), validation)
+        report(f"{name}: {figures[name]}")
+        save_filler(out / f"{name}.safetensors", trainer.filler())
+        save_card(out / f"{name}.safetensors", _card(name, training, settings, figures[name], seconds))
+        (out / f"{name}.partial.safetensors").unlink(missing_ok=True)
+    (out / SHARED).unlink(missing_ok=True)
+    return figures
+
+
+def _run(trainer: Trainer, out: Path, name: str, report: Report) -> float:
+    """Train to the end from wherever it stopped; returns the seconds that this run took."""
+    settings, shared, partial = trainer.settings, out / SHARED, out / f"{name}.partial.safetensors"
+    for earlier in (partial, shared):
+        if earlier.exists():
+            trainer.load(earlier)
+            break
+    began, last, sums = time.monotonic(), settings.shared_steps + settings.parted_steps, dict[str, float]()
+    while trainer.step < last:
+        for term, value in trainer.advance().items():
+            sums[term] = sums.get(term, 0.0) + value / 100
+        if trainer.step % 100 == 0 or trainer.step == last:
+            shown = ", ".join(f"{term} {value:.4f}" for term, value in sums.items())
+            report(f"{name} {trainer.step}/{last}: {shown} ({time.monotonic() - began:.0f} s)")
+            sums = {}
+            trainer.save(shared if trainer.step <= settings.shared_steps else partial)
+    return time.monotonic() - began
+
+
+def _card(name: str, training: Sequence[Piece], settings: Settings, metrics: dict[str, Any], seconds: float) -> Card:
+    recorded: dict[str, float] = {}
+    for piece in training:
+        recorded[piece.source] = round(recorded.get(piece.source, 0.0) + len(piece.weights) / MODEL_FPS, 1)
+    return Card(
+        kind="inpaint",
+        data={"recorded_seconds": recorded, "synthetic_minutes": settings.help.synthetic_minutes},
+        split="train; figures on the last 15 % of each training take; test takes never seen",
+        seed=settings.seed,
+        commit=commit(),
+        settings=asdict(settings),
+        metrics={"validation": metrics, "training_seconds": round(seconds)},
+        notes="The twin without adversary is kept for comparison." if name.endswith("feedforward") else "",
+    )

@@ -1,0 +1,133 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from engine.corpus import Piece
+from engine.inpaint import train as training
+from engine.inpaint.gap import FEATURES, gap_of, ground, statistics_of
+from engine.inpaint.infer import load, save_filler
+from engine.inpaint.material import (
+    Help,
+    Performance,
+    draw,
+    performances,
+    random_gap,
+    random_hole,
+    roughened,
+    synthetic,
+    window,
+)
+from engine.inpaint.train import Settings, Trainer, fill_losses, make_batch
+from engine.take import SHAPES
+
+SMALL = Settings(frames=64, hidden=16, batch=4, shared_steps=2, parted_steps=2, help=Help(synthetic_minutes=0.3))
+
+
+@pytest.fixture(scope="module")
+def material() -> list[Performance]:
+    return synthetic(0.3, np.random.default_rng(0))
+
+
+def test_synthetic_performances_say_where_their_lips_are_shut(material: list[Performance]) -> None:
+    from engine.controls import measure
+    from engine.speech.visemes import NAMES
+
+    one = material[0]
+    assert len(one.weights) == len(one.visemes) and (one.visemes >= 0).mean() > 0.95
+    lips = measure(one.weights)[:, 0]
+    shut, wide = one.visemes == NAMES.index("mbp"), one.visemes == NAMES.index("aa")
+    assert np.median(lips[shut]) < 2.0 < np.median(lips[wide])
+
+
+def test_pieces_of_the_mouth_alone_get_a_whole_face() -> None:
+    rng = np.random.default_rng(0)
+    face = Piece(rng.random((100, len(SHAPES))), True, "face")
+    mouth = Piece(np.zeros((150, len(SHAPES))), False, "mouth")
+    made = performances([face, mouth], Help(synthetic_minutes=0.0, read_lips=False), rng)
+    blink = SHAPES.index("eyeBlinkLeft")
+    assert made[1].weights[:, blink].std() > 0.1 and not made[1].weights[:, SHAPES.index("jawOpen")].any()
+
+
+def test_a_window_longer_than_its_curves_runs_to_and_fro() -> None:
+    np.testing.assert_array_equal(window(np.arange(4.0)[:, None], 9, 2)[:, 0], [2, 3, 2, 1, 0, 1, 2, 3, 2])
+
+
+def test_a_gap_shows_nothing_of_the_truth_inside_but_what_it_should(material: list[Performance]) -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(40):
+        truth = draw(material, 80, rng)
+        gap = random_gap(truth, Help(unguided=1.0), rng)
+        there = np.isfinite(gap.known)
+        np.testing.assert_array_equal(gap.known[there], truth.weights[there])
+        if not gap.known.any(where=there):
+            continue
+        assert not np.isfinite(gap.guide).any() and not gap.visemes.any()
+
+
+def test_holes_reach_both_ends_and_everything() -> None:
+    rng = np.random.default_rng(0)
+    holes = [random_hole(60, rng) for _ in range(300)]
+    assert any(hole[0].any() for hole in holes) and any(hole[-1].any() for hole in holes)
+    assert any(hole.all() for hole in holes) and all(hole.any() for hole in holes)
+
+
+def test_a_rough_guide_is_rough_and_in_range(material: list[Performance]) -> None:
+    rough = roughened(material[0].weights, np.random.default_rng(0))
+    assert rough.min() >= 0 and rough.max() <= 1 and np.abs(rough - material[0].weights).mean() > 1e-3
+
+
+def test_the_ground_keeps_what_is_known_and_features_are_finite(material: list[Performance]) -> None:
+    rng = np.random.default_rng(2)
+    statistics = statistics_of(material[0].weights)
+    for _ in range(40):
+        gap = random_gap(draw(material, 80, rng), Help(), rng)
+        under = ground(gap, statistics)
+        there = np.isfinite(gap.known)
+        np.testing.assert_array_equal(under.base[there], gap.known[there])
+        assert not under.rise[there].any() and (under.rise[~there] > 0).all()
+        assert under.features.shape == (80, FEATURES) and np.isfinite(under.features).all()
+
+
+def test_losses_equal_a_plain_sum_over_the_hole(material: list[Performance]) -> None:
+    statistics = statistics_of(material[0].weights)
+    batch = make_batch(material, statistics, SMALL, np.random.default_rng(0), 2)
+    plain = Settings(far_share=1.0, value_share=1.0)
+    values = fill_losses(batch.base, batch, training.six_distances(), plain)["values"]
+    for index in range(2):
+        hole = batch.hole[index].bool()
+        expected = (batch.base[index] - batch.truth[index]).abs()[hole].mean()
+        torch.testing.assert_close(values[index], expected)
+
+
+@pytest.mark.parametrize("adversary", [True, False])
+def test_training_goes_on_exactly_where_it_stopped(
+    material: list[Performance], tmp_path: Path, *, adversary: bool
+) -> None:
+    whole = Trainer(material, SMALL, adversary=adversary)
+    terms = [whole.advance() for _ in range(4)]
+    assert ("adversary" in terms[-1]) == adversary and all(np.isfinite(list(one.values())).all() for one in terms)
+    first = Trainer(material, SMALL, adversary=adversary)
+    for _ in range(3):
+        first.advance()
+    first.save(tmp_path / "half.safetensors")
+    second = Trainer(material, SMALL, adversary=adversary)
+    second.load(tmp_path / "half.safetensors")
+    second.advance()
+    for one, other in zip(whole.generator.parameters(), second.generator.parameters(), strict=True):
+        torch.testing.assert_close(one, other)
+
+
+def test_a_saved_filler_fills_alike(material: list[Performance], tmp_path: Path) -> None:
+    trainer = Trainer(material, SMALL, adversary=False)
+    trainer.advance()
+    known = material[0].weights[:80].copy()
+    known[30:60] = np.nan
+    save_filler(tmp_path / "inpaint.safetensors", trainer.filler())
+    made, again = (
+        f.fill(gap_of(known), seeds=(3,)) for f in (trainer.filler(), load(tmp_path / "inpaint.safetensors"))
+    )
+    np.testing.assert_allclose(made, again, atol=1e-6)
