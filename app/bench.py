@@ -120,13 +120,15 @@ def _drag_to_preview(take: Take) -> float:
     window.preview.timed.connect(loop.quit)
     window.inference.ready.connect(loop.quit)
     loop.exec()
+    patience = QTimer(singleShot=True, interval=2000)
+    patience.timeout.connect(loop.quit)
     start = len(take) // 2
     window.session.move_playhead(start + 10)
     for index in range(DRAGS + 5):
         asked = window.session.controls[start : start + 30].copy()
         asked[:, 0] += 0.1 * (index + 1)
         window.inference.ask(start, asked)
-        QTimer.singleShot(2000, loop.quit)
+        patience.start()
         loop.exec()
         application.processEvents()
     window.inference.cancel()

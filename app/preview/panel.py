@@ -30,7 +30,7 @@ from engine.character import Character
 from engine.take import Array
 
 VIEWS = ("Before", "After", "Split", "Difference")
-BUDGET_MS = 45.0  # a frame that takes longer is drawn at half resolution while something moves
+BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
 STRIP_PX = (70, 88)  # one face of a strip
 
@@ -149,7 +149,7 @@ class PreviewPanel(QFrame):
         self._frame_label = QLabel()
         self._frame_label.setProperty("quiet", True)
         self._coarse = False
-        self._spent_ms = 0.0
+        self._spent_ms = self._quick_ms = 0.0  # what a picture took, with smooth edges and without
         self._asked_at = 0.0
         self._off = False
         self._still = QTimer(self, singleShot=True, interval=STILL_MS)
@@ -224,10 +224,11 @@ class PreviewPanel(QFrame):
         if self._off or not self.isVisible():
             return
         self._coarse = moving and self._spent_ms > BUDGET_MS
-        ratio = self.devicePixelRatioF() * (0.5 if self._coarse else 1.0)
+        ratio = self.devicePixelRatioF() * (0.5 if self._coarse and self._quick_ms > BUDGET_MS else 1.0)
         size = (int(self.face.width() * ratio), int(self.face.height() * ratio))
         self._asked_at = time.perf_counter()
-        self.drawing.submit(Wanted(replace(self._shot(), size=size), self._character, since))
+        shot = replace(self._shot(), size=size, smooth_edges=not self._coarse)
+        self.drawing.submit(Wanted(shot, self._character, since))
         if self._coarse:
             self._still.start()
 
@@ -258,8 +259,10 @@ class PreviewPanel(QFrame):
             self.strip_drawn.emit(picture)
             return
         spent = (time.perf_counter() - self._asked_at) * 1e3
-        if not self._coarse:
+        if wanted.shot.smooth_edges:
             self._spent_ms = spent
+        elif wanted.shot.size[0] > 0.75 * self.face.width() * self.devicePixelRatioF():
+            self._quick_ms = spent
         self.face.show_picture(picture)
         if wanted.since:
             self.timed.emit((time.perf_counter() - wanted.since) * 1e3)

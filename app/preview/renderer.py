@@ -26,6 +26,7 @@ Picture = npt.NDArray[np.uint8]  # (height, width, 3) sRGB
 GROUND = (0x23, 0x27, 0x2E)
 _GROUND = np.array(GROUND, np.float32) / 255.0
 NECK_FADE = 0.3  # parts of the head's height over which the neck's cut end dissolves into the ground
+SAMPLES = 4
 HEAT_FULL_MM = 10.0
 # From still to far: a ramp of rising lightness that reads in grey and for colour-blind eyes too.
 HEAT = np.array([(52, 56, 66), (52, 84, 140), (86, 180, 233), (240, 228, 66), (255, 250, 225)], np.float64)
@@ -41,12 +42,14 @@ class Shot:
     camera : seen from where
     size : width and height in pixels
     compared_to : weights, (52,), whose distance to the face is painted on it in mm
+    smooth_edges : four samples a pixel; without, a picture takes half the time
     """
 
     faces: tuple[Array, ...]
     camera: Camera = field(default_factory=Camera)
     size: tuple[int, int] = (512, 512)
     compared_to: Array | None = None
+    smooth_edges: bool = True
 
 
 def heat(moved_mm: Array) -> npt.NDArray[np.uint8]:
@@ -94,6 +97,7 @@ class Renderer:
             raise EngineError(
                 f"The preview cannot be drawn: {error or type(error).__name__}.", "Editing works without it."
             ) from error
+        self._samples = _Samples(self._target._renderer)
         _skip_depth(self._target._renderer)
 
     @property
@@ -108,6 +112,8 @@ class Renderer:
     def draw(self, shot: Shot) -> Picture:
         """Return the picture of a shot, (height, width, 3)."""
         width, height = (max(16, edge) for edge in shot.size)
+        self._target._platform.make_current()
+        self._samples.use(SAMPLES if shot.smooth_edges else 0)
         borders = np.linspace(0, width, len(shot.faces) + 1).round().astype(int)
         panels = [
             self._panel(weights, shot, int(right - left), height)
@@ -184,6 +190,31 @@ def _pyrender() -> Any:
     import pyrender
 
     return pyrender
+
+
+class _Samples:
+    """How often each pixel is sampled, which pyrender fixes at four: its frame buffer is made anew for another number."""
+
+    def __init__(self, renderer: Any) -> None:
+        from pyrender import renderer as module
+
+        self._renderer, self._count = renderer, SAMPLES
+        make = module.glRenderbufferStorageMultisample
+        self._renderer._configure_main_framebuffer = self._configure
+        self._module, self._make = module, make
+
+    def use(self, count: int) -> None:
+        """Sample each pixel this often from the next picture on; a context must be current."""
+        if count != self._count:
+            self._count = count
+            self._renderer._delete_main_framebuffer()
+
+    def _configure(self) -> None:
+        self._module.glRenderbufferStorageMultisample = lambda kind, _, *size: self._make(kind, self._count, *size)
+        try:
+            type(self._renderer)._configure_main_framebuffer(self._renderer)
+        finally:
+            self._module.glRenderbufferStorageMultisample = self._make
 
 
 def _skip_depth(renderer: Any) -> None:
