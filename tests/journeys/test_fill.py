@@ -1,0 +1,74 @@
+"""The animator fills what the tracker lost, chooses among variants, and marks a span of their own."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.main_window import MainWindow
+from app.spans.filling import VARIANTS
+from app.timeline.panel import RULER_PX
+from engine.project import Span
+
+LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+
+
+def on_lane(window: MainWindow, frame: float) -> QPoint:
+    timeline = window.timeline
+    return QPoint(round(timeline.x_of(frame)), timeline.height() - 8)
+
+
+def test_a_lost_span_is_filled_with_the_chosen_variant(qtbot: QtBot, window: MainWindow) -> None:
+    session = window.session
+    (lost,) = session.marks.spans
+    assert lost.kind == "lost" and RULER_PX > 0
+    QTest.mouseClick(window.timeline, LEFT, PLAIN, on_lane(window, (lost.start + lost.stop) / 2))
+    assert session.selection == (lost.start, lost.stop)
+    QTest.keyClick(window, Qt.Key.Key_F)
+    qtbot.waitUntil(lambda: len(window.filling.variants) == VARIANTS, timeout=60_000)
+    assert session.draft is window.filling.variants[0]
+    QTest.keyClick(window, Qt.Key.Key_Right)
+    QTest.keyClick(window, Qt.Key.Key_Right)
+    assert session.draft is window.filling.variants[2]
+    wanted = window.filling.variants[2].weights
+    QTest.keyClick(window, Qt.Key.Key_Return)
+    assert session.undo.index() == 1 and session.undo.undoText() == f"fill {lost.stop - lost.start} frames"
+    np.testing.assert_array_equal(session.take.weights[lost.start : lost.stop], wanted)
+    outside = np.r_[0 : lost.start, lost.stop : len(session.take)]
+    np.testing.assert_array_equal(session.take.weights[outside], session.original.weights[outside])
+
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    np.testing.assert_array_equal(session.take.weights, session.original.weights)
+
+
+def test_a_span_is_marked_in_the_lane_and_unmarked_again(qtbot: QtBot, window: MainWindow) -> None:
+    session = window.session
+    start, stop = on_lane(window, 100), on_lane(window, 130)
+    QTest.mousePress(window.timeline, LEFT, PLAIN, start)
+    QTest.mouseMove(window.timeline, stop)
+    QTest.mouseRelease(window.timeline, LEFT, PLAIN, stop)
+    marked = [span for span in session.marks.spans if span.kind == "user"]
+    assert len(marked) == 1 and abs(marked[0].start - 100) <= 1 and abs(marked[0].stop - 131) <= 1
+    QTest.mouseClick(window.spans.remove_button, LEFT)
+    assert all(span.kind == "lost" for span in session.marks.spans)
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert marked[0] in session.marks.spans
+
+
+def test_dropping_a_fill_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWindow) -> None:
+    session = window.session
+    session.undo.clear()
+    session.select((120, 180))
+    QTest.keyClick(window, Qt.Key.Key_F)
+    qtbot.waitUntil(lambda: bool(window.filling.variants), timeout=60_000)
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    assert session.draft is None and session.undo.count() == 0 and not window.filling.variants
+    np.testing.assert_array_equal(session.take.weights, session.original.weights)
+
+
+def test_a_fill_without_a_span_says_what_to_do(qtbot: QtBot, window: MainWindow) -> None:
+    QTest.keyClick(window, Qt.Key.Key_F)
+    assert window.notices.isVisible() and "span" in window.notices.text.text()
+    assert Span(1, 2) not in window.session.marks.spans
