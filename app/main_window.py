@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtGui import (
-    QAction,
-    QActionGroup,
     QCloseEvent,
     QDragEnterEvent,
     QDropEvent,
     QKeyEvent,
-    QKeySequence,
     QShowEvent,
 )
 from PySide6.QtWidgets import (
@@ -23,18 +19,15 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QMainWindow,
-    QMenu,
     QMessageBox,
     QScrollArea,
-    QSizePolicy,
     QSplitter,
-    QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
 from app import theme
-from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
+from app.actions import ACTIONS, keys_of
 from app.clean.section import CleanSection
 from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
@@ -48,6 +41,7 @@ from app.inspector.panel import Inspector
 from app.inspector.smooth import SmoothSection
 from app.inspector.value import ValueSection
 from app.keeper import Keeper
+from app.menus import Menus
 from app.notices import Notices
 from app.pins.section import PinsSection
 from app.playback.media import Media
@@ -62,8 +56,6 @@ from app.time_actions import TimeActions
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
 from engine.take import Take, timecode
-
-HINTS = "Drag a curve: the face follows  ·  F fills what is hatched  ·  Space plays"
 
 
 class MainWindow(QMainWindow):
@@ -117,7 +109,9 @@ class MainWindow(QMainWindow):
         self.inspector = Inspector(self.session, sections)
         self._latencies_ms: list[float] = []
         self.setAcceptDrops(True)
-        self._make_actions()
+        self.menus = Menus(self, self.settings, self._do, self.files.load)
+        self.actions_by_name = self.menus.actions
+        self._show_tool()
         self._lay_out()
         self._connect()
         self.setStyleSheet(theme.style_sheet(self.colours))
@@ -127,79 +121,10 @@ class MainWindow(QMainWindow):
 
     # --- building
 
-    def _make_actions(self) -> None:
-        self.actions_by_name: dict[str, QAction] = {}
-        for entry in ACTIONS:
-            action = QAction(entry.title, self, checkable=entry.checkable)
-            action.triggered.connect(partial(self._do, entry.name))
-            self.actions_by_name[entry.name] = action
-        self._menus: dict[str, QMenu] = {}
-        for title in MENUS:
-            menu = self._menus[title] = self.menuBar().addMenu(title)
-            for entry in ACTIONS:
-                if entry.menu == title:
-                    menu.addAction(self.actions_by_name[entry.name])
-            if title == "File":
-                self._recent = menu.addMenu("Open recent")
-                self._recent.aboutToShow.connect(self._fill_recent)
-        self._show_tool()
-        self.actions_by_name["light_theme"].setChecked(self.settings.light)
-        self._make_presets()
-
-    def _make_presets(self) -> None:
-        menu = self._menus["View"].addMenu("Shortcuts")
-        self._presets = QActionGroup(self)
-        for name in PRESETS:
-            action = self._presets.addAction(menu.addAction(name))
-            action.setCheckable(True)
-            action.setChecked(name == self.settings.preset)
-            action.triggered.connect(partial(self.use_preset, name))
-        self.use_preset(self.settings.preset)
-
-    def use_preset(self, name: str, *_: bool) -> None:
-        """Use the shortcuts of a named program."""
-        self.settings.preset = name
-        for entry in ACTIONS:
-            shortcuts = [QKeySequence(key) for key in keys_of(entry, name)]
-            self.actions_by_name[entry.name].setShortcuts(shortcuts)
-
-    def _do(self, name: str, *_: bool) -> None:
+    def _do(self, name: str) -> None:
         owners = (self, self.files, self.edits, self.time)
         owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
-
-    def _toolbar(self) -> QFrame:
-        bar = QFrame()
-        bar.setProperty("panel", True)
-        row = QHBoxLayout(bar)
-        row.setContentsMargins(GRID, 6, GRID, 6)
-        row.setSpacing(4)
-        entries = {entry.name: entry for entry in ACTIONS}
-        self.buttons: dict[str, QToolButton] = {}
-        for number, group in enumerate(TOOLBAR):
-            if number:
-                line = QFrame()
-                line.setProperty("line", True)
-                line.setFixedWidth(1)
-                row.addSpacing(4)
-                row.addWidget(line)
-                row.addSpacing(4)
-            for name in group:
-                entry, button = entries[name], QToolButton()
-                button.setDefaultAction(self.actions_by_name[name])
-                button.setText(entry.short)
-                key = f"  ({entry.keys[0]})" if entry.keys else ""
-                button.setToolTip(entry.title + key)
-                button.setAccessibleName(entry.title)
-                row.addWidget(button)
-                self.buttons[name] = button
-        self.hints = QLabel(HINTS)
-        self.hints.setProperty("quiet", True)
-        self.hints.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        # it may be cut off where the window is narrow, but must not keep it from being so
-        self.hints.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        row.addWidget(self.hints, 1)
-        return bar
 
     def _lay_out(self) -> None:
         self.preview.add_beneath(self.reference)
@@ -237,7 +162,7 @@ class MainWindow(QMainWindow):
         column = QVBoxLayout(central)
         column.setContentsMargins(GRID, 0, GRID, GRID)
         column.setSpacing(GRID)
-        column.addWidget(self._toolbar())
+        column.addWidget(self.menus.toolbar())
         column.addWidget(self.notices)
         column.addLayout(middle, 1)
         column.addWidget(self._status())
@@ -306,14 +231,6 @@ class MainWindow(QMainWindow):
         self.notices.hide()
         self.status["notice"].setText(" ".join(self.session.take.notices))
         self._show_title()
-
-    def _fill_recent(self) -> None:
-        self._recent.clear()
-        for name in self.settings.recent:
-            entry = self._recent.addAction(Path(name).name)
-            entry.setToolTip(name)
-            entry.triggered.connect(partial(self.files.load, Path(name)))
-        self._recent.setEnabled(bool(self.settings.recent))
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Accept files."""
@@ -423,7 +340,7 @@ class MainWindow(QMainWindow):
         if change & (Change.TAKE | Change.CURVES | Change.SAVED):
             self._show_saved()
         if change & Change.CURVES:
-            self.hints.hide()
+            self.menus.hints.hide()
         if change & Change.TOOL:
             self._show_tool()
 
@@ -456,13 +373,11 @@ class MainWindow(QMainWindow):
             action = self.actions_by_name[name]
             action.setEnabled(able)
             action.setText(f"{name.capitalize()} {text}".strip())
-            button = self.buttons[name]
-            button.setText("↶" if name == "undo" else "↷")
-            button.setToolTip(f"{action.text()}  ({action.shortcut().toString()})")
+            action.setToolTip(f"{action.text()}  ({action.shortcut().toString()})")
 
     def _show_transport(self) -> None:
         self.actions_by_name["play"].setChecked(self.transport.playing)
-        self.buttons["play"].setText("❚❚" if self.transport.playing else "▶")
+        self.actions_by_name["play"].setIconText("❚❚" if self.transport.playing else "▶")
 
     def _timed(self, spent_ms: float) -> None:
         self._latencies_ms = [*self._latencies_ms[-19:], spent_ms]

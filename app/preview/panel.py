@@ -33,6 +33,7 @@ VIEWS = ("Before", "After", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
 STRIP_PX = (70, 88)  # one face of a strip
+STRIP_CAMERA = Camera(zoom=1.5, pan=(0.0, -0.07))
 
 
 class Face(QWidget):
@@ -236,7 +237,7 @@ class PreviewPanel(QFrame):
         """Draw faces, (52,) weights each, small and side by side; `strip_drawn` brings the picture."""
         if not self._off and faces:
             size = (STRIP_PX[0] * len(faces), STRIP_PX[1])
-            self.drawing.submit(Wanted(Shot(tuple(faces), Camera(), size), self._character, strip=True), "strip")
+            self.drawing.submit(Wanted(Shot(tuple(faces), STRIP_CAMERA, size), self._character, strip=True), "strip")
 
     def _shot(self) -> Shot:
         session, view = self._session, self.face.view
