@@ -36,6 +36,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("export", "Export take…", "File", ("Ctrl+E",), "Export", twin="retake edit -o"),
     Action("attach_audio", "Attach sound…", "File", twin="a file beside the take under its name is found"),
     Action("attach_video", "Attach a reference video…", "File", twin="a file beside the take under its name is found"),
+    Action("load_character", "Show on another head…", "File", twin="retake render --character"),
     Action("close", "Quit", "File", ("Ctrl+Q",), twin="ends the program"),
     Action("undo", "Undo", "Edit", ("Ctrl+Z",), "↶", twin="a command writes a new file; the old one stays"),
     Action("redo", "Redo", "Edit", ("Ctrl+Shift+Z", "Ctrl+Y"), "↷", twin="a command writes a new file"),
@@ -53,6 +54,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("fill", "Fill the span", "Tools", ("F",), "Fill", twin="retake fill"),
     Action("accept", "Keep the fill", "Tools", ("Return", "Enter"), twin="retake fill --seed"),
     Action("clean_tool", "Clean", "Tools", ("C",), "Clean", True, twin="retake clean"),
+    Action("live_tool", "Live", "Tools", ("Ctrl+Shift+L",), "Live", True, twin="retake live"),
     Action("smooth", "Smooth", "Tools", ("Ctrl+B",), twin="retake smooth"),
     Action("expand_lane", "Show or hide the weights below", "View", ("W",)),
     Action("play", "Play or pause", "Playback", ("Space",), "▶", True, twin="retake render -o OUT.mp4"),
@@ -83,7 +85,7 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("open_take", "save", "export"),
     ("undo", "redo"),
     ("drag_tool", "draw_tool", "scale_tool", "pin_tool", "mark_tool"),
-    ("fill", "clean_tool"),
+    ("fill", "clean_tool", "live_tool"),
     ("play", "loop"),
 )
 # Keys of programs that hands already know; what a preset does not name keeps Retake's own.

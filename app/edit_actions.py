@@ -152,6 +152,10 @@ class EditActions(QObject):
         """Work with the Mark tool."""
         self._session.choose_tool("mark")
 
+    def live_tool(self) -> None:
+        """Work with a phone's stream."""
+        self._session.choose_tool("live")
+
     def clean_tool(self) -> None:
         """Work with the Clean tool."""
         self._session.choose_tool("clean")

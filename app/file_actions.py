@@ -14,6 +14,8 @@ from app.session import Session
 from app.settings import Settings
 from engine.errors import EngineError
 from engine.formats import FORMATS, read_take, write_take
+from engine.formats.characters.opening import character_of
+from engine.take import Take
 
 PROJECT = ".retake"
 Answer = QMessageBox.StandardButton
@@ -31,6 +33,7 @@ class FileActions(QObject):
 
     told = Signal(str, str)  # sentence, advice
     opened = Signal()
+    character_chosen = Signal(object)  # a Character, or None for the bundled one
 
     def __init__(self, session: Session, keeper: Keeper, media: Media, settings: Settings, window: QWidget) -> None:
         super().__init__()
@@ -106,6 +109,21 @@ class FileActions(QObject):
             return False
         self._settings.remember(path)
         return True
+
+    def open_recording(self, take: Take) -> None:
+        """Open what was recorded live, unless edits would be lost."""
+        if self.may_lose_edits():
+            self._session.open(take, None)
+            self.opened.emit()
+
+    def load_character(self) -> None:
+        """Choose a head to show the take on; none goes back to the bundled one."""
+        kinds = "Heads (*.npz *.glb *.gltf *.obj)"
+        name, _ = QFileDialog.getOpenFileName(self._window, "Show on another head", "", kinds)
+        try:
+            self.character_chosen.emit(character_of(Path(name)) if name else None)
+        except EngineError as error:
+            self.told.emit(error.sentence, error.advice)
 
     def attach_audio(self) -> None:
         """Choose a recording to play along with the take."""

@@ -41,6 +41,7 @@ from app.inspector.panel import Inspector
 from app.inspector.smooth import SmoothSection
 from app.inspector.value import ValueSection
 from app.keeper import Keeper
+from app.live.section import LiveSection
 from app.menus import Menus
 from app.notices import Notices
 from app.pins.section import PinsSection
@@ -97,11 +98,13 @@ class MainWindow(QMainWindow):
         self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
         self.smoothing = SmoothSection(self.session)
         self.spans = SpansSection(self.session, self.filling)
+        self.live = LiveSection(self.session)
         sections = (
             self.brush,
             self.value,
             self.pins,
             self.clean,
+            self.live,
             self.smoothing,
             self.spans,
             FactsSection(self.session),
@@ -200,6 +203,10 @@ class MainWindow(QMainWindow):
         self.edits.told.connect(self.status["notice"].setText)
         self.time.looping = self.actions_by_name["loop"].isChecked
         self.filling.failed.connect(self.notices.tell)
+        self.live.failed.connect(self.notices.tell)
+        self.live.face.connect(self.preview.show_live)
+        self.live.recorded.connect(self.files.open_recording)
+        self.files.character_chosen.connect(self.preview.show_character)
         self.keeper.failed.connect(self.notices.tell)
         self.files.told.connect(self.notices.tell)
         self.files.opened.connect(self._show_opened)
@@ -263,6 +270,7 @@ class MainWindow(QMainWindow):
         self.media.close()
         self.reference.close_reader()
         self.filling.close()
+        self.live.stop()
         self.preview.close_renderer()
 
     # --- the window

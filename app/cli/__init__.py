@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
+from typing import Annotated
 
 import typer
 
@@ -23,9 +24,26 @@ def build() -> typer.Typer:
         add_completion=False,
         pretty_exceptions_enable=False,
     )
+    app.callback()(_start)
     for family in FAMILIES:
         family.register(app)
     return app
+
+
+def _tell_version(wanted: bool) -> None:
+    if wanted:
+        from app.about import describe
+
+        print(describe())
+        raise typer.Exit
+
+
+def _start(
+    version: Annotated[
+        bool, typer.Option("--version", help="Say which version this is.", callback=_tell_version, is_eager=True)
+    ] = False,
+) -> None:
+    """Edit a facial performance without reshooting it."""
 
 
 def names() -> set[str]:

@@ -71,6 +71,7 @@ def render(
     out: Out,
     frame: Annotated[int | None, typer.Option(help="The frame of a picture; the first without it.")] = None,
     compare: Annotated[Path | None, typer.Option(help="Another take to draw at its right.")] = None,
+    character: Annotated[Path | None, typer.Option(help="A head to draw it on; the bundled one without.")] = None,
     size: Annotated[int, typer.Option(help="Height in pixels.", min=64, max=4096)] = 720,
 ) -> None:
     """Draw a take: a PNG of one frame, or an MP4 of all of it."""
@@ -79,6 +80,10 @@ def render(
     shown = [read_take(path) for path in (take, compare) if path is not None]
     if frame is not None and not all(0 <= frame < len(each) for each in shown):
         raise EditError(f"Frame {frame} is not within the take, which has {min(map(len, shown))} frames.")
+    if character is not None:
+        from engine.formats.characters.opening import character_of
+
+        movie.use(character_of(character))
     if out.suffix.lower() == ".png":
         movie.write_picture(shown, frame or 0, out, height=size)
     elif out.suffix.lower() == ".mp4":

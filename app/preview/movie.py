@@ -5,23 +5,37 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from app.preview.camera import Camera
 from app.preview.renderer import Picture, Renderer, Shot
-from engine.character import bundled
+from engine.character import Character, bundled
 from engine.formats.atomic import write_bytes
 from engine.take import Take
 
 ASPECT = 0.8  # width / height of one head
 
 
-@lru_cache(maxsize=1)
+class _Studio:
+    """The one renderer, made on first use."""
+
+    renderer: Renderer | None = None
+
+
+def use(character: Character) -> None:
+    """Draw on this head from now on."""
+    if _Studio.renderer is not None:
+        _Studio.renderer.close()
+    _Studio.renderer = Renderer(character)
+
+
 def _renderer() -> Renderer:
-    return Renderer(bundled())
+    if _Studio.renderer is None:
+        use(bundled())
+    assert _Studio.renderer is not None
+    return _Studio.renderer
 
 
 def picture(takes: Sequence[Take], frame: int, *, height: int) -> Picture:

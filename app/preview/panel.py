@@ -146,6 +146,7 @@ class PreviewPanel(QFrame):
         self.setProperty("panel", True)
         self._session, self._inference = session, inference
         self._character: Character | None = None
+        self._live: Array | None = None
         self.face = Face()
         self._frame_label = QLabel()
         self._frame_label.setProperty("quiet", True)
@@ -233,6 +234,11 @@ class PreviewPanel(QFrame):
         if self._coarse:
             self._still.start()
 
+    def show_live(self, weights: Array | None) -> None:
+        """Show a live face, (52,) weights, in place of the take's; None goes back to the take."""
+        self._live = weights
+        self.refresh()
+
     def draw_strip(self, faces: list[Array]) -> None:
         """Draw faces, (52,) weights each, small and side by side; `strip_drawn` brings the picture."""
         if not self._off and faces:
@@ -244,6 +250,8 @@ class PreviewPanel(QFrame):
         after = session.frame_weights(session.playhead)
         before = np.asarray(session.original.weights[session.playhead])
         camera = self.face.camera
+        if self._live is not None:
+            return Shot((self._live,), camera)
         if view == "Before":
             return Shot((before,), camera)
         if view == "Split":

@@ -33,7 +33,18 @@ def _format_of(path: Path) -> Format:
 
 
 def read_take(path: Path) -> Take:
-    """Read a take from any supported file; raises `FormatError` with one plain sentence."""
+    """Read a take from any supported file; raises `FormatError` with one plain sentence.
+
+    Of a project, which is saved and not exported, it is the take with the edits in effect.
+    """
+    if path.suffix.lower() == ".retake":
+        from engine.project import Project, replay  # here, since projects themselves keep what formats read
+
+        project = Project.open(path)
+        try:
+            return replay(project.contents).take
+        finally:
+            project.close()
     return _format_of(path).read(path)
 
 

@@ -20,6 +20,7 @@ TOOLS: dict[str, type[Tool]] = {
     "pin": ScrubTool,
     "mark": MarkTool,
     "clean": ScrubTool,
+    "live": ScrubTool,
 }
 
 

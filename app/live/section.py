@@ -1,0 +1,159 @@
+"""Listening to a phone: raw or clean on the preview, how it is doing, and recording it to a take."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QTimer, Signal
+from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox
+
+from app.section import Section, quiet, slider
+from app.session import Session
+from engine.errors import EngineError
+
+if TYPE_CHECKING:
+    from engine.live.listen import Listener
+    from engine.live.record import Recorder
+
+POLL_MS = 16
+STATUS_EVERY = 20  # polls
+# Heard from other machines only when asked for: a face is personal, and a socket is a door.
+PLACES = {"this computer only": "127.0.0.1", "my network (a phone)": "0.0.0.0"}
+
+
+class LiveSection(Section):
+    """Listens, shows and records.
+
+    Parameters
+    ----------
+    session : the take beside which one listens; it is not touched until a recording is opened
+    """
+
+    tools = frozenset({"live"})
+    face = Signal(object)  # (52,) weights to show, or None to go back to the take
+    recorded = Signal(object)  # a Take
+    failed = Signal(str, str)
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session, "Live")
+        self._listener: Listener | None = None
+        self._recorder: Recorder | None = None
+        self._polls = 0
+        self._timer = QTimer(self, interval=POLL_MS)
+        self._timer.timeout.connect(self._poll)
+        self.place, self.port = QComboBox(), QSpinBox()
+        self.place.addItems(list(PLACES))
+        self.place.setAccessibleName("Listen to")
+        self.port.setRange(1024, 65535)
+        self.port.setValue(11111)
+        self.column.addWidget(self.place)
+        self.row("Port", self.port)
+        self.subjects = QComboBox()
+        self.subjects.setAccessibleName("Subject")
+        self.subjects.activated.connect(self._choose_subject)
+        self.column.addWidget(self.subjects)
+        self.strength = slider(0, 100)
+        self.strength.setValue(100)
+        self.strength.valueChanged.connect(self._set_strength)
+        self.column.addWidget(quiet("raw … clean"))
+        self.column.addWidget(self.strength)
+        self.listen_button, self.record_button = QPushButton("Listen"), QPushButton("Record")
+        self.listen_button.setProperty("primary", True)
+        self.side_by_side(self.listen_button, self.record_button)
+        self.listen_button.clicked.connect(self.toggle)
+        self.record_button.clicked.connect(self.toggle_recording)
+        self.status = quiet("Live Link Face: set this computer's address and the port as target.")
+        self.column.addWidget(self.status)
+        self._show_buttons()
+
+    @property
+    def listening(self) -> bool:
+        """Whether a socket is open."""
+        return self._listener is not None
+
+    def toggle(self) -> None:
+        """Begin to listen, or stop."""
+        if self._listener is not None:
+            self.stop()
+            return
+        from engine.live.listen import Listener
+        from engine.live.stream import Stream
+
+        try:
+            stream = Stream(strength=self.strength.value() / 100)
+            self._listener = Listener(stream, bind=PLACES[self.place.currentText()], port=self.port.value())
+        except EngineError as error:
+            self.failed.emit(error.sentence, error.advice)
+            return
+        self.subjects.clear()
+        self._timer.start()
+        self._show_buttons()
+
+    def stop(self) -> None:
+        """Stop listening; a recording under way is opened."""
+        if self._recorder is not None:
+            self.toggle_recording()
+        self._timer.stop()
+        if self._listener is not None:
+            self._listener.close()
+            self._listener = None
+            self.face.emit(None)
+        self._show_buttons()
+
+    def toggle_recording(self) -> None:
+        """Begin to record, or end and open what was recorded."""
+        if self._listener is None:
+            return
+        if self._recorder is None:
+            from engine.live.record import Recorder
+
+            self._recorder = Recorder()
+            self._listener.stream.on_arrival = self._recorder.add
+        else:
+            recorder, self._recorder = self._recorder, None
+            self._listener.stream.on_arrival = None
+            try:
+                self.recorded.emit(recorder.take("live"))
+            except EngineError as error:
+                self.failed.emit(error.sentence, error.advice)
+        self._show_buttons()
+
+    def _poll(self) -> None:
+        if self._listener is None:
+            return
+        frames = self._listener.frames()
+        if frames:
+            self.face.emit(np.asarray(frames[-1].clean, np.float64))
+        self._polls += 1
+        if self._polls % STATUS_EVERY == 0:
+            self._show_status()
+
+    def _show_status(self) -> None:
+        assert self._listener is not None
+        status = self._listener.status()
+        if self.subjects.count() != len(status.subjects):
+            self.subjects.clear()
+            self.subjects.addItems(list(status.subjects))
+        lines = [f"{status.frames:,} frames"]
+        if np.isfinite(status.latency_p95_ms):
+            lines.append(f"clean {status.latency_p95_ms:.1f} ms after arrival")
+        lines += [f"{count:,} {reason}" for reason, count in status.drops.items() if count]
+        if self._recorder is not None:
+            lines.append(f"recording: {len(self._recorder):,} frames")
+        self.status.setText("\n".join(lines))
+
+    def _show_buttons(self) -> None:
+        self.listen_button.setText("Stop" if self.listening else "Listen")
+        self.record_button.setText("End and open" if self._recorder is not None else "Record")
+        self.record_button.setEnabled(self.listening)
+        for widget in (self.place, self.port):
+            widget.setEnabled(not self.listening)
+
+    def _choose_subject(self, _: int) -> None:
+        if self._listener is not None:
+            self._listener.stream.choose(self.subjects.currentText())
+
+    def _set_strength(self, percent: int) -> None:
+        if self._listener is not None:
+            self._listener.stream.strength = percent / 100
