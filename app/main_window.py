@@ -225,6 +225,7 @@ class MainWindow(QMainWindow):
     def showEvent(self, event: QShowEvent) -> None:
         """Load the networks once the window can be seen."""
         super().showEvent(event)
+        self.curves.setFocus()
         QTimer.singleShot(0, self.inference.warm_up)
 
     # --- opening and closing

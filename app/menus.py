@@ -101,10 +101,12 @@ class Menus(QObject):
             for name in group:
                 button = QToolButton()
                 button.setDefaultAction(self.actions[name])
+                button.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keys to the curves
                 button.setAccessibleName(titles[name])
                 row.addWidget(button)
         self.hints.setProperty("quiet", True)
-        self.hints.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.hints.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        self.hints.setIndent(GRID)
         # it may be cut off where the window is narrow, but must not keep it from being so
         self.hints.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         row.addWidget(self.hints, 1)

@@ -12,7 +12,7 @@ from app.curves.peaks import peaks
 from app.theme import GRID, Palette
 from engine.take import Array
 
-GUTTER_PX = 136
+GUTTER_PX = 150
 INDENT_PX = 11
 
 
