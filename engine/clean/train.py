@@ -41,15 +41,15 @@ class Settings:
     streams: int = 64
     rate: float = 1e-3
     dropout: float = 0.0  # the paper's is 0.3; here every batch is spoilt anew, which keeps from overfitting too
-    derivative_share: float = 0.0003  # per (weight / s)^2; at the paper's 0.01 it outweighs the error ten times
+    derivative_share: float = 0.002  # per (weight / s)^2; at the paper's 0.01 it outweighs the error
     distance_share: float = 0.004  # per cm; the paper's 0.1 would drown the rest
     input_distance_share: float = 0.8
     synthetic_minutes: float = 8.0
     lost_share: float = 0.25  # of the loss on lost frames, whose luck would otherwise drown what can be learnt
     ridge: float = 1e-3
     mouth_share: float = 0.3  # weight of takes that animate the mouth alone
-    strengths: tuple[float, float] = (0.2, 1.4)
-    faults: Faults = field(default_factory=Faults)
+    strengths: tuple[float, float] = (0.2, 2.0)
+    faults: Faults = field(default_factory=lambda: Faults(amplitude=0.85))  # the most that may be made up
     levers: Levers = field(default_factory=lambda: Levers(copies=4))
 
 

@@ -34,7 +34,7 @@ class Spreading:
     """
 
     alpha: float = 0.0
-    closure: float = 30000.0
+    closure: float = 300000.0
     stiffness: float = 0.1
 
 
