@@ -67,6 +67,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("previous_frame", "Previous frame", "Playback", ("Left",)),
     Action("first_frame", "First frame", "Playback", ("Shift+Left",)),
     Action("last_frame", "Last frame", "Playback", ("Shift+Right",)),
+    Action("note", "Note on this frame", "Edit", ("N",), twin="a note belongs to a project"),
     Action("next_span", "Next span", "Playback", ("Down",), twin="retake info"),
     Action("previous_span", "Previous span", "Playback", ("Up",), twin="retake info"),
     Action("set_in", "Selection begins here", "Playback", ("I",), twin="--frames A:B"),

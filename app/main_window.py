@@ -43,6 +43,7 @@ from app.inspector.value import ValueSection
 from app.keeper import Keeper
 from app.live.section import LiveSection
 from app.menus import Menus
+from app.notes.section import NotesSection
 from app.notices import Notices
 from app.pins.section import PinsSection
 from app.playback.media import Media
@@ -99,6 +100,7 @@ class MainWindow(QMainWindow):
         self.smoothing = SmoothSection(self.session)
         self.spans = SpansSection(self.session, self.filling)
         self.live = LiveSection(self.session)
+        self.notes = NotesSection(self.session)
         sections = (
             self.brush,
             self.value,
@@ -108,6 +110,7 @@ class MainWindow(QMainWindow):
             self.smoothing,
             self.spans,
             FactsSection(self.session),
+            self.notes,
         )
         self.inspector = Inspector(self.session, sections)
         self._latencies_ms: list[float] = []
@@ -279,6 +282,10 @@ class MainWindow(QMainWindow):
     def fill(self) -> None:
         """Fill the chosen span, or the selection."""
         self.spans.fill()
+
+    def note(self) -> None:
+        """Type a note on the frame at the playhead."""
+        self.notes.entry.setFocus()
 
     def _show_filling(self) -> None:
         # Enter belongs to whatever is typed into, unless there is a variant to keep

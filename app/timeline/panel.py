@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
 
 from app.session import Change, Session
 from app.theme import GRID, Palette
+from app.timeline.marks import LANE_PX, draw_marks, lanes
 from app.timeline.waveform import draw_waveform
 from engine.take import timecode
 
@@ -45,10 +46,10 @@ class Timeline(QWidget):
 
     def sizeHint(self) -> QSize:
         """As high as its lanes."""
-        return QSize(400, self._spans_top() + SPANS_PX)
+        return QSize(400, self._marks_top() + LANE_PX * len(lanes(self._session.marks)))
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.MEDIA):
+        if change & (Change.TAKE | Change.MEDIA | Change.MARKS):
             self.updateGeometry()
         shown = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
         if change & shown:
@@ -58,6 +59,9 @@ class Timeline(QWidget):
 
     def _spans_top(self) -> int:
         return RULER_PX + (AUDIO_PX if self._session.audio is not None else 0)
+
+    def _marks_top(self) -> int:
+        return self._spans_top() + SPANS_PX
 
     def _span_px(self) -> float:
         return max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
@@ -82,11 +86,14 @@ class Timeline(QWidget):
         painter.drawText(QRectF(GRID, self._spans_top(), self._gutter, SPANS_PX), left, "spans")
         if self._session.audio is not None:
             painter.drawText(QRectF(GRID, RULER_PX, self._gutter, AUDIO_PX), left, "audio")
+        for row, name in enumerate(lanes(self._session.marks)):
+            painter.drawText(QRectF(GRID, self._marks_top() + row * LANE_PX, self._gutter, LANE_PX), left, name)
         painter.setClipRect(QRectF(self._gutter, 0, self._span_px(), self.height()))
         self._draw_selection(painter)
         self._draw_ticks(painter)
         self._draw_audio(painter)
         self._draw_spans(painter)
+        draw_marks(painter, self._session.marks, self._marks_top(), self.x_of, self._colours)
         x = self.x_of(self._session.playhead)
         painter.setPen(QPen(QColor(self._colours.text), 1))
         painter.drawLine(int(x), 2, int(x), self.height())
@@ -156,7 +163,7 @@ class Timeline(QWidget):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         frame = round(self.frame_at(event.position().x()))
-        in_lane = event.position().y() > self._spans_top()
+        in_lane = self._spans_top() < event.position().y() <= self._marks_top()
         hit = [span for span in self._session.marks.spans if span.start <= frame < span.stop] if in_lane else []
         if hit:
             self._session.select((hit[0].start, hit[0].stop))

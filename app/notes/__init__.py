@@ -1,0 +1,1 @@
+"""Notes: remarks on frames."""

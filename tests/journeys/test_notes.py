@@ -1,0 +1,28 @@
+"""The reviewer leaves a note on a frame and finds it again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.main_window import MainWindow
+from engine.performance import demo
+
+
+def test_a_note_is_typed_shown_saved_and_taken_back(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
+    session, height = window.session, window.timeline.sizeHint().height()
+    session.move_playhead(120)
+    QTest.keyClick(window, Qt.Key.Key_N)
+    QTest.keyClicks(window.notes.entry, "lips miss the b")
+    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
+    (note,) = session.marks.notes
+    assert (note.frame, note.text) == (120, "lips miss the b")
+    assert window.timeline.sizeHint().height() > height
+    window.keeper.save_as(tmp_path / "noted.retake")
+    assert window.load(demo.BUNDLED) and session.marks.notes == ()
+    assert window.load(tmp_path / "noted.retake") and session.marks.notes == (note,)
+    session.undo.undo()
+    assert session.marks.notes == ()
