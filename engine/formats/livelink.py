@@ -96,7 +96,7 @@ def read(path: Path, *, fps: float | None = None, swap: bool = True) -> Take:
         rotations=rotations,
         name=path.name,
         notices=tuple(clock.notices),
-        start_s=_seconds(timecodes[0]) or 0.0,
+        start_s=0.0 if (first := _seconds(timecodes[:1])) is None else float(first[0]),
         origin=origin,
     )
     suspicion = _side_suspicion(take)
@@ -258,14 +258,18 @@ def _require_finite(values: Array, header: list[str], path: Path) -> None:
         )
 
 
-def _seconds(timecode: bytes) -> float | None:
-    parts = timecode.split(b":")
-    try:
-        hours, minutes, seconds, ticks = (float(part) for part in parts)
-    except ValueError:
+def _seconds(timecodes: list[bytes]) -> Array | None:
+    """Return times, (rows,) in seconds, of `HH:MM:SS:FF.mmm`; None where one of them is no time."""
+    if any(timecode.count(b":") != 3 for timecode in timecodes):
         return None
-    time_s = 3600 * hours + 60 * minutes + seconds + ticks / TICKS_PER_SECOND
-    return time_s if np.isfinite(time_s) else None
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            parts = np.fromstring(b":".join(timecodes), dtype=np.float64, sep=":").reshape(-1, 4)
+        except (ValueError, DeprecationWarning):
+            return None
+    times = parts @ np.array([3600.0, 60.0, 1.0, 1.0 / TICKS_PER_SECOND])
+    return times if len(times) == len(timecodes) and np.isfinite(times).all() else None
 
 
 def _clock(timecodes: list[bytes], fps: float | None) -> _Clock:
@@ -274,11 +278,11 @@ def _clock(timecodes: list[bytes], fps: float | None) -> _Clock:
         return _Clock(fps, rows)
     if len(timecodes) == 1:
         return _Clock(FALLBACK_FPS, rows, [f"One frame has no rate: taken as {FALLBACK_FPS:g} fps."])
-    times = [_seconds(timecode) for timecode in timecodes]
+    times = _seconds(timecodes)
     fallback = _Clock(FALLBACK_FPS, rows, [f"The timecodes make no sense: taken as {FALLBACK_FPS:g} fps, row by row."])
-    if any(time is None for time in times):
+    if times is None:
         return fallback
-    steps = np.diff(np.array(times, float))
+    steps = np.diff(times)
     steps = np.where(steps < -DAY_S / 2, steps + DAY_S, steps)  # past midnight
     typical = float(np.median(steps))
     if typical <= 1 / 1000 or typical > 0.5 or (steps <= 0).any():
