@@ -17,6 +17,9 @@ from engine.models.checkpoint import MODELS, load_model, save_model
 from engine.models.threads import one_thread
 from engine.take import Array
 
+# The generator learns to lean little on its noise. Three times as much triples what tells variants apart and brings the
+# speed of fills nearer to that of recordings, at one per cent of error from one second up (validation takes).
+LIVELINESS = 3.0
 _STATISTICS = ("mean", "scale", "rest", "spread", "cross")
 
 
@@ -47,11 +50,11 @@ class Filler:
         return np.stack([shut_lips(one, gap) for one in known])
 
     def _noise(self, seed: int, frames: int) -> torch.Tensor:
-        """Noise as in training: the first curve is new at every frame, the others hold all along."""
+        """Noise as in training but stronger: the first curve is new at every frame, the others hold all along."""
         rng = torch.Generator().manual_seed(seed)
         noise = torch.randn(1, self.generator.config.noise, generator=rng).repeat(frames, 1)
         noise[:, 0] = torch.randn(frames, generator=rng)
-        return noise
+        return LIVELINESS * noise
 
 
 def save_filler(path: Path, filler: Filler) -> None:
