@@ -11,7 +11,7 @@ from engine.errors import EditError, FormatError
 from engine.formats import read_take, write_take
 
 if TYPE_CHECKING:
-    from engine.inpaint.request import Pose
+    from engine.pose import Pose
     from engine.take import Array
 
 

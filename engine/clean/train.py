@@ -13,18 +13,19 @@ import numpy.typing as npt
 import torch
 from torch import Tensor
 
-from engine.clean.distances import Distances
 from engine.clean.material import CHANGING, cubic
 from engine.clean.network import CleanConfig, CleanNetwork, State, config_of, run
 from engine.corpus import Piece, split
 from engine.errors import EngineError
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.models.distances import Distances, six_distances
 from engine.performance.augment import LOWER, Levers, augment
 from engine.performance.corpus import synthetic_performances
 from engine.performance.degrade import Faults, changing_times, degrade, scaled
 from engine.take import MODEL_FPS, Array
 
 Report = Callable[[str], None]
+MM_PER_CM = 10.0  # distances count in cm, so that they weigh like weights
 RATES_FPS = (24.0, 30.0, 60.0, 120.0, CHANGING)
 
 
@@ -114,7 +115,7 @@ class Trainer:
         torch.manual_seed(settings.seed)
         self._settings, self._training, self._partial = settings, training, partial
         self._rng = np.random.default_rng(settings.seed)
-        self._distances = Distances()
+        self._distances = six_distances(unit_mm=MM_PER_CM)
         self._valid = make_batch(validation, settings, np.random.default_rng(1))
         self.network = CleanNetwork(CleanConfig())
         self._optimizer = torch.optim.Adam(self.network.parameters(), lr=settings.rate)

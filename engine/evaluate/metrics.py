@@ -50,20 +50,3 @@ def tracking_error(asked: Array, reached: Array) -> Array:
 def velocity_error(made: Array, truth: Array, fps: float) -> float:
     """Return the mean absolute difference of velocities of curves, (frames, n), in units per second."""
     return float(np.abs(np.diff(made, axis=0) - np.diff(truth, axis=0)).mean() * fps)
-
-
-def npss(made: Sequence[Array], truth: Sequence[Array]) -> float:
-    """Return the normalised power spectrum similarity of pairs of curves, (frames, n) each; 0 where spectra agree.
-
-    The earth mover's distance between normalised power spectra of each curve, weighted by its power in the truth
-    (Gopalakrishnan et al. 2019, section 4.2).
-    """
-    distances, powers = [], []
-    for one, other in zip(made, truth, strict=True):
-        spectra = [np.abs(np.fft.fft(curves, axis=0)) ** 2 for curves in (one, other)]
-        totals = [spectrum.sum(axis=0) for spectrum in spectra]
-        shares = [spectrum / np.maximum(total, 1e-12) for spectrum, total in zip(spectra, totals, strict=True)]
-        distances.append(np.abs(np.cumsum(shares[0], axis=0) - np.cumsum(shares[1], axis=0)).sum(axis=0))
-        powers.append(totals[1])
-    weight = np.array(powers)
-    return float((np.array(distances) * weight).sum() / max(float(weight.sum()), 1e-12))

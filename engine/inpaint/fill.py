@@ -14,9 +14,10 @@ from engine.errors import EditError
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler, bundled
 from engine.inpaint.regions import region_shapes
-from engine.inpaint.request import Pose, Request, Style, checked
+from engine.inpaint.request import Request, Style, checked
 from engine.inpaint.seams import REACH_FRAMES, bridge, land
 from engine.models.resample import interpolate
+from engine.pose import Pose
 from engine.speech.visemes import Cue, classes_over, one_hot
 from engine.take import MODEL_FPS, SHAPES, Array, Take, runs
 

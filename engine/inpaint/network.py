@@ -8,27 +8,9 @@ import torch
 from torch import Tensor, nn
 from torch.nn.utils.parametrizations import spectral_norm
 
-from engine.character import bundled
-from engine.controls import Control, Measurer
 from engine.inpaint.gap import FEATURES
-from engine.models.distances import Distances
+from engine.models.distances import SIX, Distances
 from engine.take import SHAPES
-
-# The six distances of BSS20 section 3.3: lips at three places, mouth corners, both lids.
-SIX: tuple[Control, ...] = (
-    Control("lips_middle", "lips, middle", "lip_inner_upper", "lip_inner_lower", "lower"),
-    Control("lips_right", "lips, right", "lip_inner_upper_right", "lip_inner_lower_right", "lower"),
-    Control("lips_left", "lips, left", "lip_inner_upper_left", "lip_inner_lower_left", "lower"),
-    Control("corners", "mouth width", "mouth_right", "mouth_left", "lower"),
-    Control("lids_right", "right eye", "lid_upper_right", "lid_lower_right", "eyelids"),
-    Control("lids_left", "left eye", "lid_upper_left", "lid_lower_left", "eyelids"),
-)
-
-
-def six_distances() -> Distances:
-    """Return the layer that measures the six distances on the bundled head."""
-    return Distances(Measurer(bundled(), SIX))
-
 
 _WIDEST = 8.0  # spreads; beyond it a feature tells nothing more
 

@@ -11,10 +11,10 @@ import numpy as np
 from engine.controls import control_index
 from engine.errors import EditError
 from engine.inpaint.regions import region_shapes
+from engine.pose import Pose, filled
 from engine.speech.visemes import Cue, class_of
-from engine.take import SHAPE_INDEX, SHAPES, Array, Take
+from engine.take import SHAPES, Array, Take
 
-Pose = Mapping[str, float] | Array
 LOWEST, HIGHEST = -0.1, 1.1  # recorded weights stray a little outside 0..1
 Style = Literal["auto", "bridge", "perform"]
 STYLES: tuple[Style, ...] = ("auto", "bridge", "perform")
@@ -36,14 +36,14 @@ class Request:
 
     def poses(self) -> dict[int, Array]:
         """Return pins as (52,) weights by frame, NaN where a shape is free."""
-        return {frame: _pose(pose) for frame, pose in self.pins.items()}
+        return {frame: filled(pose) for frame, pose in self.pins.items()}
 
 
 def merged_pins(pins: Iterable[tuple[int, Pose]]) -> dict[int, Pose]:
     """Return pins by frame, those of one frame joined; raises `EditError` where two disagree."""
     merged: dict[int, Array] = {}
     for frame, pose in pins:
-        new = _pose(pose)
+        new = filled(pose)
         old = merged.get(frame, np.full(len(SHAPES), np.nan))
         clash = np.isfinite(old) & np.isfinite(new) & (old != new)
         if clash.any():
@@ -125,19 +125,3 @@ def _curve(name: str, curve: Array | float, length: int) -> Array:
     if np.isinf(asked).any() or (asked < 0).any():
         raise EditError(f"The curve for {name} asks for a distance that is negative or infinite.")
     return np.array(np.broadcast_to(asked.reshape(-1), (length,)))
-
-
-def _pose(pose: Pose) -> Array:
-    if not isinstance(pose, Mapping):
-        weights = np.asarray(pose, np.float64)
-        if weights.shape != (len(SHAPES),):
-            raise EditError(f"A pinned pose needs {len(SHAPES)} weights, this one has {weights.size}.")
-        return weights
-    weights = np.full(len(SHAPES), np.nan)
-    for shape, value in pose.items():
-        if shape not in SHAPE_INDEX:
-            raise EditError(f"There is no shape called {shape!r}.", "Shapes have ARKit names, such as jawOpen.")
-        if not np.isfinite(value):
-            raise EditError(f"The pin of {shape} is not a finite number.")
-        weights[SHAPE_INDEX[shape]] = value
-    return weights

@@ -16,8 +16,9 @@ from engine.corpus import Piece, split
 from engine.inpaint.gap import Statistics, ground, statistics_of
 from engine.inpaint.infer import Filler, save_filler
 from engine.inpaint.material import Help, Performance, draw, performances, random_gap
-from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, see, six_distances
+from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, see
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.models.distances import six_distances
 from engine.models.threads import one_thread
 from engine.take import MODEL_FPS
 

@@ -5,23 +5,34 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from engine.controls import Measurer
+from engine.character import bundled
+from engine.controls import Control, Measurer
 from engine.take import SHAPE_INDEX
 
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 
+# The six distances of BSS20 section 3.3 and BSS20b section 3.2: lips at three places, mouth corners, both lids.
+SIX: tuple[Control, ...] = (
+    Control("lips_middle", "lips, middle", "lip_inner_upper", "lip_inner_lower", "lower"),
+    Control("lips_right", "lips, right", "lip_inner_upper_right", "lip_inner_lower_right", "lower"),
+    Control("lips_left", "lips, left", "lip_inner_upper_left", "lip_inner_lower_left", "lower"),
+    Control("corners", "mouth width", "mouth_right", "mouth_left", "lower"),
+    Control("lids_right", "right eye", "lid_upper_right", "lid_lower_right", "eyelids"),
+    Control("lids_left", "left eye", "lid_upper_left", "lid_lower_left", "eyelids"),
+)
+
 
 class Distances(nn.Module):
-    """`Measurer.measure` in torch: weights, (..., 52), to distances, (..., controls) in mm."""
+    """`Measurer.measure` in torch: weights, (..., 52), to distances, (..., controls) in mm, or in another unit."""
 
     rest: Tensor
     basis: Tensor
 
-    def __init__(self, measurer: Measurer) -> None:
+    def __init__(self, measurer: Measurer, *, unit_mm: float = 1.0) -> None:
         super().__init__()
         rest, basis = measurer.linear
-        self.register_buffer("rest", torch.tensor(rest, dtype=torch.float32), persistent=False)
-        self.register_buffer("basis", torch.tensor(basis, dtype=torch.float32), persistent=False)
+        self.register_buffer("rest", torch.tensor(rest / unit_mm, dtype=torch.float32), persistent=False)
+        self.register_buffer("basis", torch.tensor(basis / unit_mm, dtype=torch.float32), persistent=False)
 
     def forward(self, weights: Tensor) -> Tensor:
         """Measure; mouthClose counts no further than the jaw is open."""
@@ -30,3 +41,8 @@ class Distances(nn.Module):
         moved = weights @ self.basis  # (..., controls * 3)
         vectors = moved.reshape(*moved.shape[:-1], -1, 3) + self.rest
         return torch.sqrt(vectors.square().sum(dim=-1) + 1e-6)
+
+
+def six_distances(*, unit_mm: float = 1.0) -> Distances:
+    """Return the layer that measures the six distances on the bundled head."""
+    return Distances(Measurer(bundled(), SIX), unit_mm=unit_mm)

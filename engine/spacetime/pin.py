@@ -12,14 +12,13 @@ from engine import exact
 from engine.character import Character, bundled
 from engine.controls import bundled_measurer, control_index
 from engine.errors import EditError
+from engine.pose import Pose, filled
 from engine.spacetime import prior
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import standard
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.system import Position, System
-from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take, runs
-
-Pose = Mapping[str, float] | Array  # weights by name, or (52,) with NaN for what is not pinned
+from engine.take import SHAPES, Array, Mask, Take, runs
 
 
 @dataclass(frozen=True)
@@ -146,7 +145,7 @@ class PinSolver:
         self._spread = Spread(self._motion, held, [frame - self._first for frame in pins], spreading=spreading)
 
     def _mask(self, pose: Pose) -> Mask:
-        return np.ones(len(SHAPES), bool) if self._whole else np.isfinite(_filled(pose))
+        return np.ones(len(SHAPES), bool) if self._whole else np.isfinite(filled(pose))
 
     def solve(self, pins: Mapping[int, Pose]) -> Array:
         """Return the weights of the range, (stop - start, 52), for new values of the same pins."""
@@ -154,10 +153,10 @@ class PinSolver:
         if pins.keys() != self._pinned.keys():
             raise EditError("The pins are at other frames than before.", "Prepare the range again.")
         for frame, pose in pins.items():
-            filled = _filled(pose)
-            if not self._whole and not np.array_equal(np.isfinite(filled), self._pinned[frame]):
+            asked = filled(pose)
+            if not self._whole and not np.array_equal(np.isfinite(asked), self._pinned[frame]):
                 raise EditError("The pins hold other weights than before.", "Prepare the range again.")
-            values[frame - self._first] = np.where(np.isfinite(filled), filled, values[frame - self._first])
+            values[frame - self._first] = np.where(np.isfinite(asked), asked, values[frame - self._first])
         start, stop = self._frames
         return self._spread(values)[start - self._first : stop - self._first]
 
@@ -202,19 +201,3 @@ def _check(take: Take, pins: Mapping[int, Pose], frames: tuple[int, int]) -> Non
     for frame in pins:
         if not start <= frame < stop:
             raise EditError(f"The pin at frame {frame} is not within the range {start}:{stop}.", "Widen the range.")
-
-
-def _filled(pose: Pose) -> Array:
-    """Return a pose as (52,), NaN for what it does not pin; raises `EditError` for unknown shapes and no numbers."""
-    if isinstance(pose, np.ndarray):
-        if pose.shape != (len(SHAPES),) or np.isinf(pose).any():
-            raise EditError(f"A pinned pose needs {len(SHAPES)} finite weights.")
-        return pose
-    filled = np.full(len(SHAPES), np.nan)
-    for name, value in pose.items():
-        if name not in SHAPE_INDEX:
-            raise EditError(f"There is no shape called {name!r}.", "Shapes have ARKit names, such as jawOpen.")
-        if not np.isfinite(value):
-            raise EditError(f"The shape {name} is pinned to something that is not a finite number.")
-        filled[SHAPE_INDEX[name]] = value
-    return filled

@@ -1,0 +1,29 @@
+"""A pose that is asked for: some weights of one frame, or all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from engine.errors import EditError
+from engine.take import SHAPE_INDEX, SHAPES, Array
+
+Pose = Mapping[str, float] | Array  # weights by shape, or (52,) with NaN for what is free
+
+
+def filled(pose: Pose) -> Array:
+    """Return a pose as (52,), NaN for what is free; raises `EditError` for unknown shapes and what is no number."""
+    if not isinstance(pose, Mapping):
+        weights = np.asarray(pose, np.float64)
+        if weights.shape != (len(SHAPES),) or np.isinf(weights).any():
+            raise EditError(f"A pinned pose needs {len(SHAPES)} finite weights, this one has {weights.size}.")
+        return weights
+    weights = np.full(len(SHAPES), np.nan)
+    for shape, value in pose.items():
+        if shape not in SHAPE_INDEX:
+            raise EditError(f"There is no shape called {shape!r}.", "Shapes have ARKit names, such as jawOpen.")
+        if not np.isfinite(value):
+            raise EditError(f"The pin of {shape} is not a finite number.")
+        weights[SHAPE_INDEX[shape]] = value
+    return weights
