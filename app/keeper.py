@@ -90,6 +90,7 @@ class Keeper(QObject):
         self._newest = session.contents()  # what is to be written
         self._wished: _Saving | None = None
         self._stopped = False
+        self._waits: Contents | None = None  # steps that could not be kept while a copy was made
         self._afterwards: list[Callable[[], None]] = []
         self._opening = False
         self._told = ""
@@ -135,6 +136,8 @@ class Keeper(QObject):
 
         Raises `EngineError`. One that cannot be written is opened all the same, as unsaved work.
         """
+        if self.path is not None and path.exists() and path.samefile(self.path):
+            self._detach(delete=False)  # a file is open once: what is in memory is in it
         self._adopt(Project.open(path), path, saved=True)
 
     def save_as(self, path: Path) -> None:
@@ -323,11 +326,13 @@ class Keeper(QObject):
         """Put the steps made meanwhile in the file that is being copied, and so in the copy."""
         self._report(share)
         old, newest = self._project, self._newest
-        if old is not None and newest is not old.contents and newest.original is old.contents.original:
-            try:
-                old.put(newest)
-            except EngineError as error:
-                log.warning("a step waits for the save to end: %s", error)
+        if old is None or newest in (old.contents, self._waits) or newest.original is not old.contents.original:
+            return
+        try:
+            old.put(newest)
+        except EngineError as error:
+            self._waits = newest  # once is enough: each attempt lets the copy begin anew
+            log.warning("a step waits for the save to end: %s", error)
 
     def _new_path(self) -> Path:
         try:

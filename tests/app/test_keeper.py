@@ -317,12 +317,12 @@ def test_a_running_program_keeps_its_work_to_itself(make: Made, tmp_path: Path) 
 
 @pytest.mark.parametrize("seed", range(10))
 def test_a_kill_loses_no_edit_that_was_reported_as_finished(seed: int, tmp_path: Path) -> None:
-    kills.check(seed, tmp_path, saving=False)
+    kills.check(seed, tmp_path, "edit")
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_kill_while_saving_never_harms_the_old_file(seed: int, tmp_path: Path) -> None:
-    kills.check(seed, tmp_path, saving=True)
+    kills.check(seed, tmp_path, "save")
 
 
 def test_the_session_s_contents_are_what_its_edits_come_to(make: Made) -> None:
