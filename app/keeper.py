@@ -6,7 +6,8 @@ import logging
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -65,6 +66,15 @@ class _Saving:
     path: Path
 
 
+@contextmanager
+def _as_unsaved_work(path: Path) -> Iterator[None]:
+    """Let an error speak of unsaved work: the name of its file says nothing to the user."""
+    try:
+        yield
+    except EngineError as error:
+        raise EngineError(error.sentence.replace(path.name, "unsaved work"), error.advice) from error
+
+
 class Keeper(QObject):
     """Commits each change of a session's undo stack and marks, and saves projects, on a thread of its own.
 
@@ -78,6 +88,7 @@ class Keeper(QObject):
     """
 
     failed = Signal(str, str)  # sentence, advice
+    mended = Signal(str)  # the sentence of a failure that is over
     kept = Signal(object)  # the Contents that are safe on disk
     saved = Signal(object)  # the path of a project that was just saved
     progress = Signal(float)  # the share of the save that is done, from the keeper's thread
@@ -220,13 +231,18 @@ class Keeper(QObject):
             if isinstance(wanted, _Saving):
                 return self._save(wanted.path)
             if self._kept is None:
-                self._kept = _Kept(project.create(self._new_path(), wanted), saved=False)
+                path = self._new_path()
+                with _as_unsaved_work(path):
+                    self._kept = _Kept(project.create(path, wanted), saved=False)
             elif wanted is not self._kept.project.contents:  # a save may have brought them already
-                self._kept.project.put(wanted)
+                with nullcontext() if self._kept.saved else _as_unsaved_work(self._kept.project.path):
+                    self._kept.project.put(wanted)
             return self._kept.project
 
     def _written(self, wanted: Contents | _Saving, result: Project) -> None:
-        self._told = ""
+        if self._told:
+            self.mended.emit(self._told)
+            self._told = ""
         if isinstance(wanted, _Saving):
             self._arrived(wanted, result)
         else:

@@ -216,6 +216,7 @@ class MainWindow(QMainWindow):
         self.files.character_chosen.connect(self.preview.show_character)
         self.keeper.failed.connect(self.notices.tell)
         self.keeper.saved.connect(self._show_saved)
+        self.keeper.mended.connect(self.notices.withdraw)
         self.files.told.connect(self.notices.tell)
         self.files.opened.connect(self._show_opened)
         self.filling.changed.connect(self._show_filling)
