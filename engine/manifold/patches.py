@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,12 @@ FLAT = 1e-7  # a direction this much thinner than the widest is one that the pat
 CENTRE_SHARE = 10.0  # weight of a patch's own vertex against all its neighbours together: ten heads of the second set
 COLUMNS = 4  # solved at a time: more wake threads that cost more than they do (80 at once took ten times as long)
 REACH = 2.0  # neighbours count by distance to the power of minus this
+CHUNK_ENTRIES = 1 << 20  # of patch matrices that are in memory at a time
+Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may raise, to stop
+
+
+def silent(_: float) -> None:
+    """Tell nobody."""
 
 
 def adjacency(triangles: npt.NDArray[np.integer], vertices: int) -> sp.csr_array:
@@ -86,7 +92,12 @@ def _weighted(pattern: sp.csr_array, points: Array) -> sp.csr_array:
 
 
 def alignment(
-    points: Array, neighbourhoods: sp.csr_array, *, dimension: int = 3, stiffness: float = 0.0
+    points: Array,
+    neighbourhoods: sp.csr_array,
+    *,
+    dimension: int = 3,
+    stiffness: float = 0.0,
+    tell: Tell = silent,
 ) -> sp.csc_array:
     """Return B of ZLL17 equation 15: what it costs a data set to leave the local structure of `points`.
 
@@ -100,23 +111,29 @@ def alignment(
     points : (n, D) data points
     neighbourhoods : (n, n) weights; row i holds the members of patch i
     dimension : of the tangent space; directions that a patch does not have are left out
+    tell : is told the share that is done
     """
-    rows, columns, values = zip(*_scattered(points, neighbourhoods, dimension, stiffness), strict=True)
+    rows, columns, values = zip(*_scattered(points, neighbourhoods, dimension, stiffness, tell), strict=True)
     places = (np.concatenate(rows), np.concatenate(columns))
     count = len(points)
     return sp.coo_array((np.concatenate(values), places), shape=(count, count)).tocsc()
 
 
 def _scattered(
-    points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float
+    points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float, tell: Tell
 ) -> Iterator[tuple[Indices, Indices, Array]]:
-    """Yield rows, columns and values of the patches' matrices, patches of one size at a time."""
+    """Yield rows, columns and values of the patches' matrices, some patches of one size at a time."""
     sizes = np.diff(neighbourhoods.indptr)
+    done = 0
     for size in np.unique(sizes[sizes > 0]):
-        entries = neighbourhoods.indptr[np.flatnonzero(sizes == size)][:, None] + np.arange(size)
-        members = neighbourhoods.indices[entries].astype(np.int64)
-        local = _patch_matrices(points[members], neighbourhoods.data[entries], dimension, stiffness)
-        yield np.repeat(members, size, axis=1).ravel(), np.tile(members, (1, size)).ravel(), local.ravel()
+        alike = np.flatnonzero(sizes == size)
+        for patches in np.array_split(alike, -(-len(alike) * int(size) ** 2 // CHUNK_ENTRIES)):
+            tell(done / len(sizes))
+            done += len(patches)
+            entries = neighbourhoods.indptr[patches][:, None] + np.arange(size)
+            members = neighbourhoods.indices[entries].astype(np.int64)
+            local = _patch_matrices(points[members], neighbourhoods.data[entries], dimension, stiffness)
+            yield np.repeat(members, size, axis=1).ravel(), np.tile(members, (1, size)).ravel(), local.ravel()
 
 
 def _patch_matrices(members: Array, weights: Array, dimension: int, stiffness: float) -> Array:
@@ -179,6 +196,19 @@ class LabelSolver:
     def influence(self) -> Array:
         """Return how far each label moves each data point, (n, m): all solves to come in one matrix product."""
         return self.solve(np.eye(len(self._labelled)))
+
+    def uncertainty(self) -> Array:
+        """Return how loosely the labels hold each data point, (n,): the root of the diagonal of ``(B + beta S)^-1``.
+
+        Were the energy a likelihood, this would be each point's standard deviation up to a common factor.
+        """
+        spread = np.empty(self._count)
+        for start in range(0, self._count, COLUMNS):
+            columns = np.arange(start, min(start + COLUMNS, self._count))
+            asked = np.zeros((self._count, len(columns)))
+            asked[columns, columns - start] = 1.0
+            spread[columns] = self._factor.solve(asked)[columns, columns - start]
+        return np.sqrt(np.maximum(spread, 0.0))
 
 
 def _undetermined() -> EditError:

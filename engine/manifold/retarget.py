@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from engine.errors import EditError
-from engine.manifold.patches import Indices, LabelSolver, alignment, similar
+from engine.manifold.patches import Indices, LabelSolver, Tell, alignment, silent, similar
 from engine.take import Array, Take
 
 COORDINATES = 40  # principal coordinates that tell frames apart; the rest is noise, and slow to search
@@ -45,6 +45,7 @@ class Retargeter:
     source : (frames, D) what the source does, such as feature points in mm
     base : (frames, q) the target as it would be with no labels
     labelled : (m,) frames
+    tell : is told the share that is done, 0..1; it may raise, to stop
 
     Raises
     ------
@@ -57,6 +58,7 @@ class Retargeter:
         base: Array,
         labelled: Indices,
         settings: Settings = Settings(),
+        tell: Tell = silent,
     ) -> None:
         self._base = np.asarray(base, np.float64)
         self._labelled = np.asarray(labelled, np.int64)
@@ -68,6 +70,7 @@ class Retargeter:
             similar(points[self._solved], size=settings.neighbours),
             dimension=settings.dimension,
             stiffness=settings.stiffness,
+            tell=tell,
         )
         place = np.searchsorted(self._solved, self._labelled)
         self._solver = LabelSolver(energy, place, beta=settings.beta)
@@ -87,6 +90,12 @@ class Retargeter:
         if len(others):
             result[others] += _by_patch(self._points, others, self._solved, known, self._settings)
         return result
+
+    def uncertainty(self) -> Array:
+        """Return how loosely the labels hold each frame, (frames,); a frame that was not solved has its nearest one's."""
+        known = self._solver.uncertainty()
+        nearest = cKDTree(self._points[self._solved]).query(self._points)[1]
+        return np.asarray(known[nearest], np.float64)
 
 
 def coordinates(source: Array) -> Array:
@@ -145,15 +154,45 @@ def retarget_points(
     return retargeter.solve(np.stack([labels[int(f)].ravel() for f in frames])).reshape(base.shape)
 
 
-def retarget_weights(take: Take, labels: dict[int, Array], settings: Settings | None = None) -> Take:
-    """Return the take as a target with shapes plays it, given the target's weights, (52,), at a few frames."""
+@dataclass(frozen=True, eq=False)
+class Labelled:
+    """A take made from labels, and how loosely they hold each of its frames, (frames,): the loosest wants the next label."""
+
+    take: Take
+    uncertainty: Array
+
+
+def from_labels(
+    take: Take,
+    labels: dict[int, Array],
+    settings: Settings | None = None,
+    *,
+    source: Array | None = None,
+    tell: Tell = silent,
+) -> Labelled:
+    """Return the take as a target with shapes plays it, given the target's weights, (52,), at a few frames.
+
+    Parameters
+    ----------
+    take : the target's weights as they would be with no labels
+    labels : by frame
+    source : (frames, D) what tells frames apart; the take's weights without it
+    tell : is told the share that is done, 0..1; it may raise, to stop
+    """
     frames = np.array(sorted(labels), np.int64)
     if not len(frames):
         raise EditError("There is no labelled frame.", "Pose the target at one frame or more.")
-    retargeter = Retargeter(take.weights, take.weights, frames, settings or Settings())
+    points = take.weights if source is None else source
+    retargeter = Retargeter(points, take.weights, frames, settings or Settings(), tell)
     asked = np.stack([np.asarray(labels[int(frame)], np.float64) for frame in frames])
     low, high = np.minimum(take.weights.min(axis=0), 0.0), np.maximum(take.weights.max(axis=0), 1.0)
-    return take.with_weights(np.clip(retargeter.solve(asked), low, high))
+    made = take.with_weights(np.clip(retargeter.solve(asked), low, high))
+    return Labelled(made, retargeter.uncertainty())
+
+
+def retarget_weights(take: Take, labels: dict[int, Array], settings: Settings | None = None) -> Take:
+    """Return what `from_labels` makes, the take alone."""
+    return from_labels(take, labels, settings).take
 
 
 def _require_usable(source: Array, base: Array, labelled: Indices) -> None:
