@@ -122,7 +122,7 @@ def _vertex(name: str, text: str) -> int:
 def drive(
     markers: Annotated[Path, typer.Argument(help="Markers in a CSV, TRC or C3D file, or a take.")],
     mesh: Annotated[Path, typer.Option(help="The head to move: OBJ, glTF, or anything `character import` reads.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Where the moving mesh is written: .glb or .npz.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Where the moving mesh is written: .glb, .usd or .npz.")],
     points: Annotated[
         Path | None, typer.Option(help="Which vertex follows which marker: a CSV of marker,vertex; found otherwise.")
     ] = None,
