@@ -25,14 +25,13 @@ class RenderJob:
 
     def __init__(self) -> None:
         self._renderer: Renderer | None = None
-        self._character: Character | None = None
 
     def __call__(self, wanted: Wanted) -> Picture:
         """Return the picture of a shot."""
         shown = wanted.character or character.bundled()
-        if self._renderer is None or self._character is not shown:
-            self.close()
-            self._renderer, self._character = Renderer(shown), shown
+        if self._renderer is None:
+            self._renderer = Renderer(shown)
+        self._renderer.character = shown
         return self._renderer.draw(wanted.shot)
 
     def close(self) -> None:
