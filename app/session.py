@@ -67,7 +67,7 @@ class Session(QObject):
     video, video_offset_s : the file of the reference video, likewise
     marks : spans, pins, notes, media and verdict
     visemes : what is said when, or None
-    flags : what was found automatically, by the first frame
+    flags : what was found automatically, by the first frame; None while it is looked for
     touched : the half-open range of frames that changed last
     """
 
@@ -92,7 +92,7 @@ class Session(QObject):
         self.asked = np.full_like(measured, np.nan)
         self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
         self.visemes: VisemeLane | None = None
-        self.flags: tuple[quality.Flag, ...] = ()
+        self.flags: tuple[quality.Flag, ...] | None = None
         self.touched = (0, len(take))
         self.draft: Patch | None = None
         self.selection: tuple[int, int] | None = None

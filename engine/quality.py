@@ -13,10 +13,11 @@ from functools import cached_property
 import numpy as np
 
 from engine.anatomy import BOTH, EXCLUSIVE, Indices, clash
-from engine.controls import CONTROL_INDEX, CONTROLS
+from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer
+from engine.errors import EditError
 from engine.speech.lane import VisemeLane
 from engine.speech.visemes import NAMES
-from engine.take import Array, Mask, runs
+from engine.take import Array, Mask, Take, runs
 
 # What is flagged, and what to call it.
 KINDS: dict[str, str] = {
@@ -79,6 +80,36 @@ class Seen:
     def length(self) -> int:
         """Number of frames."""
         return len(self.weights)
+
+
+def seen_of(
+    take: Take,
+    original: Take | None = None,
+    asked: Array | None = None,
+    visemes: VisemeLane | None = None,
+    *,
+    controls: tuple[Array, Array] | None = None,
+) -> Seen:
+    """Return what there is to look at in a take, beside the one that it was made from.
+
+    Parameters
+    ----------
+    asked : (frames, 8) mm, NaN where nothing was asked
+    controls : of the take and of the original, (frames, 8) mm each, where they have been measured
+
+    Raises `EditError` for an original of another length.
+    """
+    if original is None:
+        measured = bundled_measurer().measure(take.weights) if controls is None else controls[0]
+        return Seen(take.weights, measured, take.fps, take.lost, asked, None, visemes)
+    if len(original) != len(take):
+        raise EditError(
+            f"The original has {len(original)} frames, the take {len(take)}.", "Name the take that was edited."
+        )
+    measure = bundled_measurer().measure
+    now, before = controls if controls is not None else (measure(take.weights), measure(original.weights))
+    lost = still_lost(take.weights, original.weights, take.lost)
+    return Seen(take.weights, now, take.fps, lost, asked, before, visemes)
 
 
 def still_lost(weights: Array, original: Array, lost: Mask) -> Mask:
@@ -202,39 +233,46 @@ def _missed(seen: Seen, low: int, high: int) -> Iterator[Flag]:
 def _open(seen: Seen) -> Iterator[Flag]:
     """Yield places where lips should meet and never do: M, B and P, and where they met before the edits."""
     lips = seen.controls[:, _LIPS]
-    for start, stop, label in _said(seen):
-        nearest = float(lips[start:stop].min())
+    said, labels = _said(seen)
+    for (start, stop), nearest, label in zip(said.tolist(), _lowest(lips, said), labels, strict=True):
         if nearest > CLOSED_MM:
             text = f"The lips stay {nearest:.1f} mm apart where {label} is said."
             yield Flag("open", start, stop, _weight((nearest - CLOSED_MM) / (FULL_GAP_MM - CLOSED_MM)), text)
-    for start, stop in _met(seen):
-        nearest = float(lips[start:stop].min())
+    met = _met(seen)
+    for (start, stop), nearest in zip(met.tolist(), _lowest(lips, met), strict=True):
         if nearest > CLOSED_MM:
             text = f"The lips met here before the edits and now stay {nearest:.1f} mm apart."
             yield Flag("open", start, stop, _weight((nearest - CLOSED_MM) / (FULL_GAP_MM - CLOSED_MM)), text)
 
 
-def _said(seen: Seen) -> Iterator[tuple[int, int, str]]:
-    """Yield the frames over which lips should meet, as far as the take goes, and the label that says so."""
+def _lowest(curve: Array, ranges: Indices) -> Array:
+    """Return the least of a curve, (frames,), over each of the half-open ranges, (n, 2)."""
+    padded = np.append(curve, np.inf)  # a range may end with the curve
+    return np.asarray(np.minimum.reduceat(padded, ranges.reshape(-1))[::2] if len(ranges) else np.zeros(0))
+
+
+def _said(seen: Seen) -> tuple[Indices, list[str]]:
+    """Return the frames over which lips should meet, (n, 2), as far as the take goes, and the labels that say so."""
     lane = seen.visemes
     if lane is None:
-        return
+        return np.zeros((0, 2), np.int64), []
     shut = np.flatnonzero(lane.classes == _MBP)
     frames = np.round(lane.times_s[shut] * seen.fps).astype(np.int64)
-    for index, (start, stop) in zip(shut, frames, strict=True):
-        first, last = max(0, int(start)), min(seen.length, max(int(stop), int(start) + 1))
-        if first < last:
-            yield first, last, lane.cues[index].label
+    frames[:, 1] = np.maximum(frames[:, 1], frames[:, 0] + 1)
+    frames = np.clip(frames, 0, seen.length)
+    within = frames[:, 0] < frames[:, 1]
+    return frames[within], [lane.cues[index].label for index in shut[within]]
 
 
-def _met(seen: Seen) -> Iterator[tuple[int, int]]:
-    """Yield where the lips met briefly as the take was opened, and nobody has asked anything of them since."""
+def _met(seen: Seen) -> Indices:
+    """Return where the lips met briefly as the take was opened and nobody has asked anything of them since, (n, 2)."""
     if seen.original_controls is None:
-        return
-    for start, stop in runs(seen.original_controls[:, _LIPS] < CLOSED_MM):
-        untold = seen.asked is None or np.isnan(seen.asked[start:stop, _LIPS]).all()
-        if stop - start <= BRIEF_S * seen.fps and untold and not seen.lost[start:stop].any():
-            yield start, stop
+        return np.zeros((0, 2), np.int64)
+    met = np.array(runs(seen.original_controls[:, _LIPS] < CLOSED_MM), np.int64).reshape(-1, 2)
+    settled = seen.lost if seen.asked is None else seen.lost | ~np.isnan(seen.asked[:, _LIPS])
+    before = np.append(0, np.cumsum(settled))
+    free = before[met[:, 1]] == before[met[:, 0]]
+    return np.asarray(met[free & (np.diff(met, axis=1)[:, 0] <= BRIEF_S * seen.fps)])
 
 
 def _lasting(frames: int, fps: float) -> str:

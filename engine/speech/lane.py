@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from engine.errors import EditError
-from engine.speech.visemes import NAMES, Cue, class_of
+from engine.speech.visemes import NAMES, Cue, begun_at, class_of
 from engine.take import Array
 
 LEAST_S = 0.01  # the shortest cue: what mouth-cue files resolve
@@ -75,19 +75,28 @@ class VisemeLane:
         if abs(flat[nearest] - time_s) > within_s:
             return None
         cue, is_end = divmod(nearest, 2)
-        if is_end:
-            shared = cue + 1 < len(self.cues) and self.cues[cue + 1].start_s == self.cues[cue].stop_s
-            return cue, cue + 1 if shared else None
-        shared = cue > 0 and self.cues[cue - 1].stop_s == self.cues[cue].start_s
-        return cue - 1 if shared else None, cue
+        return self.end_of(cue) if is_end else self.begin_of(cue)
+
+    def begin_of(self, index: int) -> tuple[int | None, int]:
+        """Return a cue with the one before it where that ends as this begins."""
+        shared = index > 0 and self.cues[index - 1].stop_s == self.cues[index].start_s
+        return (index - 1 if shared else None), index
+
+    def end_of(self, index: int) -> tuple[int, int | None]:
+        """Return a cue with the one after it where that begins as this ends."""
+        shared = index + 1 < len(self.cues) and self.cues[index + 1].start_s == self.cues[index].stop_s
+        return index, (index + 1 if shared else None)
+
+    def frames_of(self, index: int, fps: float) -> tuple[int, int]:
+        """Return the half-open range of frames over which a cue is said, at least one."""
+        start, stop = np.ceil(self.times_s[index] * fps - 0.5).astype(int).tolist()
+        return start, max(stop, start + 1)
 
     def over(self, start_s: float, stop_s: float) -> tuple[Cue, ...]:
         """Return the cues that reach into a stretch of the take, in its seconds."""
         first = int(np.searchsorted(self.times_s[:, 1], start_s, side="right"))
         last = int(np.searchsorted(self.times_s[:, 0], stop_s, side="left"))
-        return tuple(
-            Cue(cue.start_s + self.offset_s, cue.stop_s + self.offset_s, cue.label) for cue in self.cues[first:last]
-        )
+        return begun_at(self.cues[first:last], self.offset_s)
 
 
 def attached(cues: Iterable[Cue], source: str) -> VisemeLane:

@@ -76,7 +76,9 @@ def test_each_kind_is_where_a_plain_rule_says() -> None:
     found = {kind: [(f.start, f.stop) for f in flags_of(seen) if f.kind == kind] for kind in KINDS}
     assert found["lost"] == runs(seen.lost)
     assert found["impossible"] == runs(impossible(seen.weights))
-    same = [i > 0 and not seen.lost[i - 1 : i + 1].any() and (seen.weights[i] == seen.weights[i - 1]).all() for i in frames]
+    same = [
+        i > 0 and not seen.lost[i - 1 : i + 1].any() and (seen.weights[i] == seen.weights[i - 1]).all() for i in frames
+    ]
     assert found["frozen"] == [run for run in runs(np.array(same)) if run[1] - run[0] >= 2]
     for start, stop in found["missed"]:
         away = np.abs(seen.asked[start:stop] - seen.controls[start:stop])
