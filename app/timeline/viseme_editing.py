@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QPoint, Qt, Signal
@@ -26,6 +26,7 @@ Edge = tuple[int | None, int | None]
 class _Drag:
     edge: Edge
     began_s: float
+    before: VisemeLane
     lane: VisemeLane  # as it would be
 
 
@@ -106,7 +107,7 @@ class VisemeEditing(QObject):
             return
         painter.save()
         self._strip.draw(painter, lane, self._place(), colours)
-        if self._drag is not None:
+        if self._drag is not None and self._drag.before is lane:
             moved = [index for index in self._drag.edge if index is not None]
             self._strip.draw_moved(painter, self._drag.lane, moved, self._place(), colours)
         painter.restore()
@@ -140,25 +141,26 @@ class VisemeEditing(QObject):
         lane, edge = self._session.visemes, self.edge_at(x)
         if lane is None or edge is None:
             return False
-        self._drag = _Drag(edge, self.time_at(x), lane)
+        self._drag = _Drag(edge, self.time_at(x), lane, lane)
         return True
 
     def move(self, x: float) -> None:
         """Show the boundary that is held at another place."""
-        lane = self._session.visemes
-        if self._drag is not None and lane is not None:
-            edge, to_s = self._drag.edge, self.time_at(x)
-            was_s = lane.times_s[edge[0], 1] if edge[0] is not None else lane.times_s[edge[1], 0]
-            # it moves as far as the pointer does, which rarely takes hold of its very middle
-            moved = with_boundary(lane, *edge, float(was_s) + to_s - self._drag.began_s)
-            self._drag = _Drag(edge, self._drag.began_s, moved)
-            self._host.update()
+        drag = self._drag
+        if drag is None:
+            return
+        lane, (before, after) = drag.before, drag.edge
+        was_s = lane.times_s[before, 1] if before is not None else lane.times_s[after, 0]
+        # it moves as far as the pointer does, which rarely takes hold of its very middle
+        moved = with_boundary(lane, before, after, float(was_s) + self.time_at(x) - drag.began_s)
+        self._drag = replace(drag, lane=moved)
+        self._host.update()
 
     def release(self) -> None:
         """Leave the boundary where it is: one undo step."""
         drag, self._drag = self._drag, None
-        if drag is not None and drag.lane is not self._session.visemes:
-            self._push(drag.lane, "move a viseme boundary")
+        if drag is not None and drag.lane is not drag.before:
+            self._push(drag.before, drag.lane, "move a viseme boundary")
         self._host.update()
 
     def drop(self) -> None:
@@ -183,11 +185,11 @@ class VisemeEditing(QObject):
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         if index is not None:
             for name, title in choices():
-                menu.addAction(icon(name, colours), title).triggered.connect(partial(self._say, index, name))
+                menu.addAction(icon(name, colours), title).triggered.connect(partial(self._say, lane, index, name))
             menu.addSeparator()
             menu.addAction("Type…").triggered.connect(partial(self.type_name, index))
             menu.addAction("Shift all so that it begins at the playhead").triggered.connect(
-                partial(self._begin_at_playhead, index)
+                partial(self._begin_at_playhead, lane, index)
             )
         for name, title in (
             ("shift_visemes", "Shift all…"),
@@ -207,7 +209,7 @@ class VisemeEditing(QObject):
         x = box.left() + (float(start_s) - first_s) / max(1e-9, last_s - first_s) * box.width()
         entry = self._open_entry(f"{label} {start_s:.3f} {stop_s:.3f}", SAYS, x)
         entry.setSelection(0, len(label))
-        entry.given.connect(partial(self._say_typed, index))
+        entry.given.connect(partial(self._say_typed, lane, index))
 
     def type_shift(self) -> None:
         """Let the time be typed at which the lane's file begins."""
@@ -216,7 +218,7 @@ class VisemeEditing(QObject):
             hint = "seconds of the take at which the file of the visemes begins"
             entry = self._open_entry(f"{lane.offset_s:g}", hint, self._place()[0].left())
             entry.selectAll()
-            entry.given.connect(self._shift_typed)
+            entry.given.connect(partial(self._shift_typed, lane))
 
     def _open_entry(self, text: str, hint: str, x: float) -> Entry:
         box, _ = self._place()
@@ -227,39 +229,32 @@ class VisemeEditing(QObject):
         entry.setFocus()
         return entry
 
-    def _say(self, index: int, label: str, *_: bool) -> None:
-        lane = self._session.visemes
-        if lane is not None:
-            self._push(renamed(lane, index, label), f"say {label}")
+    def _say(self, lane: VisemeLane, index: int, label: str, *_: bool) -> None:
+        self._push(lane, renamed(lane, index, label), f"say {label}")
 
-    def _say_typed(self, index: int, text: str) -> None:
-        lane = self._session.visemes
-        if lane is None:
-            return
+    def _say_typed(self, lane: VisemeLane, index: int, text: str) -> None:
         try:
-            self._push(_as_typed(lane, index, text), f"say {text.split(maxsplit=1)[0]}")
+            self._push(lane, _as_typed(lane, index, text), f"say {text.split(maxsplit=1)[0]}")
         except EngineError as error:
             self.failed.emit(error.sentence, error.advice)
 
-    def _shift_typed(self, text: str) -> None:
-        lane = self._session.visemes
+    def _shift_typed(self, lane: VisemeLane, text: str) -> None:
         try:
-            if lane is not None:
-                self._push(shifted(lane, _seconds(text)), "shift the visemes")
+            self._push(lane, shifted(lane, _seconds(text)), "shift the visemes")
         except EngineError as error:
             self.failed.emit(error.sentence, error.advice)
 
-    def _begin_at_playhead(self, index: int, *_: bool) -> None:
-        lane, session = self._session.visemes, self._session
-        if lane is not None:
-            by_s = session.playhead / session.take.fps - float(lane.times_s[index, 0])
-            self._push(shifted(lane, lane.offset_s + by_s), "shift the visemes")
+    def _begin_at_playhead(self, lane: VisemeLane, index: int, *_: bool) -> None:
+        by_s = self._session.playhead / self._session.take.fps - float(lane.times_s[index, 0])
+        self._push(lane, shifted(lane, lane.offset_s + by_s), "shift the visemes")
 
     def _want(self, name: str, *_: bool) -> None:
         self.wanted.emit(name)
 
-    def _push(self, lane: VisemeLane, title: str) -> None:
-        self._session.undo.push(VisemesCommand(self._session, lane, title))
+    def _push(self, before: VisemeLane, after: VisemeLane, title: str) -> None:
+        """Make one undo step, unless the lane has become another since it was taken hold of."""
+        if self._session.visemes is before:
+            self._session.undo.push(VisemesCommand(self._session, after, title))
 
 
 def _seconds(text: str) -> float:

@@ -12,7 +12,8 @@ from engine.errors import EditError
 from engine.speech.visemes import NAMES, Cue, begun_at, class_of
 from engine.take import Array
 
-LEAST_S = 0.01  # the shortest cue: what mouth-cue files resolve
+LEAST_S = 0.01  # what a boundary leaves of a cue: what mouth-cue files resolve
+INSTANT_S = 1e-6  # a cue that lasts no longer is a point in time
 # What the mouth does, by the classes that do it: lanes are coloured by this.
 GROUPS: dict[str, tuple[str, ...]] = {
     "silence": ("sil",),
@@ -106,12 +107,12 @@ def attached(cues: Iterable[Cue], source: str) -> VisemeLane:
     """
     found: list[Cue] = []
     for cue in sorted(cues, key=lambda each: (each.start_s, each.stop_s)):
-        if not (np.isfinite([cue.start_s, cue.stop_s]).all() and cue.stop_s > cue.start_s):
+        if not (np.isfinite([cue.start_s, cue.stop_s]).all() and cue.stop_s - cue.start_s > INSTANT_S):
             continue  # a point in time says nothing of how long
         class_of(cue.label)
         while found and found[-1].stop_s > cue.start_s:
             last = found.pop()
-            if cue.start_s > last.start_s:
+            if cue.start_s - last.start_s > INSTANT_S:
                 found.append(replace(last, stop_s=cue.start_s))
                 break
         found.append(cue)

@@ -9,8 +9,9 @@ from app.edit_actions import EditActions
 from app.file_actions import FileActions
 from app.main_window import MainWindow
 from app.time_actions import TimeActions
+from app.viseme_actions import VisemeActions
 
-OWNERS = (MainWindow, FileActions, EditActions, TimeActions)
+OWNERS = (MainWindow, FileActions, EditActions, TimeActions, VisemeActions)
 
 
 @pytest.mark.parametrize("preset", list(PRESETS))
