@@ -5,13 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import (
-    QCloseEvent,
-    QDragEnterEvent,
-    QDropEvent,
-    QKeyEvent,
-    QShowEvent,
-)
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QShowEvent
 from PySide6.QtWidgets import (
     QApplication,
     QFrame,
@@ -30,6 +24,7 @@ from app.curves.panel import CurvesPanel
 from app.curves.tools import TOOLS
 from app.edit_actions import EditActions
 from app.file_actions import FileActions
+from app.flagging import Flagging
 from app.inference import Inference
 from app.inspector.brush import BrushSection
 from app.inspector.facts import FactsSection
@@ -58,6 +53,7 @@ from app.theme import GRID
 from app.time_actions import TimeActions
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
+from app.viseme_actions import VisemeActions
 from engine.take import Take
 
 
@@ -97,6 +93,8 @@ class MainWindow(QMainWindow):
         self.timeline = Timeline(self.session, self.colours, gutter_px=GUTTER_PX)
         self.filling = Filling(self.session)
         self.edits = EditActions(self.session, self.inference, self.curves, self.filling)
+        self.flagging = Flagging(self.session)
+        self.visemes = VisemeActions(self.session, self.timeline.visemes, self)
         self.time = TimeActions(self.session, self.transport, self.filling)
         self.brush, self.value = BrushSection(self.session), ValueSection(self.session)
         self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
@@ -134,7 +132,7 @@ class MainWindow(QMainWindow):
     # --- building
 
     def _do(self, name: str) -> None:
-        owners = (self, self.files, self.sound, self.edits, self.time, self.preferences)
+        owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.preferences)
         owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
 
@@ -183,9 +181,9 @@ class MainWindow(QMainWindow):
 
     def _connect(self) -> None:
         self.session.changed.connect(self._on_change)
-        self.inference.failed.connect(self.notices.tell)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        for part in (self.preview, self.media, self.reference):
+        shown = (self.preview, self.media, self.reference, self.live)
+        for part in (*shown, self.inference, self.filling, self.keeper, self.visemes, self.timeline.visemes):
             part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self.status.timed)
         self.media.missing_changed.connect(self._show_missing)
@@ -209,13 +207,12 @@ class MainWindow(QMainWindow):
         self.edits.cutoff_hz = self.smoothing.cutoff.value
         self.edits.told.connect(self.status["notice"].setText)
         self.time.looping = self.actions_by_name["loop"].isChecked
-        self.filling.failed.connect(self.notices.tell)
-        self.live.failed.connect(self.notices.tell)
         self.live.face.connect(self.preview.show_live)
         self.live.recorded.connect(self.files.open_recording)
         self.files.character_chosen.connect(self.preview.show_character)
-        self.keeper.failed.connect(self.notices.tell)
         self.keeper.saved.connect(self._show_saved)
+        self.timeline.visemes.wanted.connect(self._do)
+        self.files.cues_dropped.connect(self.visemes.attach)
         self.files.told.connect(self.notices.tell)
         self.files.opened.connect(self._show_opened)
         self.filling.changed.connect(self._show_filling)
@@ -292,6 +289,8 @@ class MainWindow(QMainWindow):
         self.media.close()
         self.reference.close_reader()
         self.filling.close()
+        self.flagging.close()
+        self.visemes.close()
         self.live.stop()
         self.preview.close_renderer()
         self.preferences.close()

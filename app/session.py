@@ -12,9 +12,11 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
+from engine import quality
 from engine.controls import CONTROLS, bundled_measurer
 from engine.formats.audio import Audio
 from engine.project import Contents, Marks, Replayed, Span
+from engine.speech.lane import VisemeLane
 from engine.take import Array, Take, runs
 
 if TYPE_CHECKING:
@@ -41,6 +43,8 @@ class Change(Flag):
     SAVED = auto()
     MEDIA = auto()  # sound or reference video
     MARKS = auto()  # spans, pins, notes, media or the verdict
+    VISEMES = auto()  # what is said when
+    FLAGS = auto()  # what was found automatically
 
 
 class Session(QObject):
@@ -65,6 +69,9 @@ class Session(QObject):
     video : the file of the reference video, likewise
     sliding : the kind of what is being moved in time, and where it is by now; None between moves
     marks : spans, pins, notes, media and verdict
+    visemes : what is said when, or None
+    flags : what was found automatically, by the first frame; None while it is looked for
+    touched : the half-open range of frames that changed last
     """
 
     changed = Signal(object)
@@ -87,6 +94,9 @@ class Session(QObject):
         self.controls = self.original_controls = measured
         self.asked = np.full_like(measured, np.nan)
         self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
+        self.visemes: VisemeLane | None = None
+        self.flags: tuple[quality.Flag, ...] | None = None
+        self.touched = (0, len(take))
         self.draft: Patch | None = None
         self.selection: tuple[int, int] | None = None
         self.lane = 0
@@ -114,6 +124,7 @@ class Session(QObject):
             self._restoring = False
             self.blockSignals(False)
         self.take, self.asked, self.marks = state.take, state.asked, contents.marks
+        self.visemes = state.visemes
         measured = bundled_measurer().measure(self.take.weights)
         measured.flags.writeable = False
         self.controls = measured
@@ -132,6 +143,17 @@ class Session(QObject):
             media = marks.media != self.marks.media
             self.marks = marks
             self.changed.emit(Change.MARKS | Change.MEDIA if media else Change.MARKS)
+
+    def set_visemes(self, visemes: VisemeLane | None) -> None:
+        """Put another visemes lane in place; for commands only."""
+        if visemes is not self.visemes and not self._restoring:
+            self.visemes = visemes
+            self.changed.emit(Change.VISEMES)
+
+    def set_flags(self, flags: tuple[quality.Flag, ...]) -> None:
+        """Show what was found automatically."""
+        self.flags = flags
+        self.changed.emit(Change.FLAGS)
 
     def _on_clean_changed(self, _: bool) -> None:
         self.changed.emit(Change.SAVED)
@@ -202,6 +224,7 @@ class Session(QObject):
         self.controls = _with_rows(self.controls, start, controls)
         self.asked = _with_rows(self.asked, start, asked)
         self.draft = None
+        self.touched = (start, stop)
         self.changed.emit(Change.CURVES | Change.DRAFT)
         assert stop <= len(self.take)
 

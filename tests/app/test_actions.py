@@ -11,8 +11,9 @@ from app.main_window import MainWindow
 from app.media_actions import MediaActions
 from app.settings_actions import SettingsActions
 from app.time_actions import TimeActions
+from app.viseme_actions import VisemeActions
 
-OWNERS = (MainWindow, FileActions, MediaActions, EditActions, TimeActions, SettingsActions)
+OWNERS = (MainWindow, FileActions, MediaActions, EditActions, TimeActions, VisemeActions, SettingsActions)
 
 
 @pytest.mark.parametrize("preset", list(PRESETS))
