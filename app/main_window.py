@@ -208,6 +208,7 @@ class MainWindow(QMainWindow):
         self.filling.failed.connect(self.notices.tell)
         self.live.failed.connect(self.notices.tell)
         self.live.face.connect(self.preview.show_live)
+        self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
         self.files.character_chosen.connect(self.preview.show_character)
         self.keeper.failed.connect(self.notices.tell)

@@ -1,0 +1,239 @@
+"""A phone's stream in the whole window: delay, memory, a flood, and whether the recording is what was sent.
+
+Run: xvfb-run -a python -m tests.performance.live [seconds] [--record] [--flood]
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import os
+import resource
+import socket
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import numpy as np
+
+from engine.clean.material import cubic
+from engine.live.livelink import Stamp, encode
+from engine.live.replay import Network, packets, schedule
+from engine.performance import demo
+from engine.take import SHAPES, Array, Take
+
+FPS = 60.0
+NETWORK = Network(loss=0.05, reorder=0.05, jitter_s=0.004)
+FLOOD_PER_S = 5000
+TICK_MS = 10
+SETTLED_S = 20.0  # networks, renderer and caches are warm by then
+WINDOW_S = 60.0  # of the first and of the last figures
+GOALS = {"weights_ms_p95": 3.0, "preview_ms_p95": 60.0, "event_loop_late_ms_p95": 50.0}
+
+
+def performance(seconds: float) -> Take:
+    """Return the demo take at sixty frames a second, over and over, so long."""
+    own = demo.performance()
+    once = cubic(own.weights, np.arange(0, len(own) - 1, own.fps / FPS))
+    there_and_back = np.concatenate([once, once[::-1]]).astype(np.float32)
+    return Take(np.resize(there_and_back, (round(seconds * FPS), len(SHAPES))), FPS, name="sent")
+
+
+def send(port: int, seconds: float, tell: Connection) -> None:
+    """Send a performance as a phone would; tells (packets, 2) index and time of sending at the end."""
+    take = performance(seconds)
+    encoded = list(packets(take))
+    sent = []
+    with socket.socket(type=socket.SOCK_DGRAM) as out:
+        began = time.perf_counter() + 1.0
+        for due, index in schedule(take, NETWORK):
+            time.sleep(max(0.0, began + due - time.perf_counter()))
+            sent.append((index, time.perf_counter()))
+            out.sendto(encoded[index], ("127.0.0.1", port))
+    tell.send(np.array(sent))
+
+
+def flood(port: int, seconds: float) -> None:
+    """Send faces and nonsense from another address, many thousand a second."""
+    rng = np.random.default_rng(0)
+    kinds = [encode(Stamp(1), rng.random(len(SHAPES)).astype(np.float32), subject="flood"), rng.bytes(700), b""]
+    with socket.socket(type=socket.SOCK_DGRAM) as out:
+        out.bind(("127.0.0.2", 0))
+        began = time.perf_counter()
+        for index in range(round(seconds * FLOOD_PER_S)):
+            time.sleep(max(0.0, began + index / FLOOD_PER_S - time.perf_counter()))
+            out.sendto(kinds[index % 3], ("127.0.0.1", port))
+
+
+def resident_mb() -> float:
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * resource.getpagesize() / 1e6
+
+
+@dataclass
+class Log:
+    """What is noted while the window runs; times on the clock of `time.perf_counter`."""
+
+    ready: dict[int, float] = field(default_factory=dict)  # when a frame's clean weights were there
+    arrived: dict[float, int] = field(default_factory=dict)  # which frame arrived when
+    shown: list[tuple[int, float]] = field(default_factory=list)  # which frame was on screen when
+    late: list[tuple[float, float]] = field(default_factory=list)  # when the event loop ticked, and by how much late, s
+    resident: list[tuple[float, float]] = field(default_factory=list)  # MB
+
+
+def watch(window, first: int, log: Log) -> list[object]:  # type: ignore[no-untyped-def]
+    """Note everything from now on; returns the timers, to be kept."""
+    from PySide6.QtCore import Qt, QTimer
+
+    listener = window.live._listener
+    taken = listener.frames
+
+    def frames():  # type: ignore[no-untyped-def]
+        new = taken()
+        for frame in new:
+            index = first + round(frame.time_s * FPS)
+            log.arrived[frame.arrived_s] = index
+            log.ready[index] = frame.arrived_s + frame.latency_ms / 1e3
+        return new
+
+    def drawn(wanted, _: object) -> None:  # type: ignore[no-untyped-def]
+        if wanted.since in log.arrived:
+            log.shown.append((log.arrived[wanted.since], time.perf_counter()))
+
+    def tick() -> None:
+        now = time.perf_counter()
+        if log.late or ticked:
+            log.late.append((now, max(0.0, now - ticked[-1] - TICK_MS / 1e3)))
+        ticked[:] = [now]
+
+    ticked: list[float] = []
+    listener.frames = frames
+    window.preview.drawing.done.connect(drawn)
+    timers = []
+    for interval, kind, slot in (
+        (TICK_MS, Qt.TimerType.PreciseTimer, tick),
+        (1000, Qt.TimerType.CoarseTimer, lambda: log.resident.append((time.perf_counter(), resident_mb()))),
+    ):
+        timer = QTimer(window, interval=interval, timerType=kind)
+        timer.timeout.connect(slot)
+        timer.start()
+        timers.append(timer)
+    return timers
+
+
+def delays_ms(log: Log, sent: Array) -> tuple[Array, Array]:
+    """Return (n, 2) time of sending and delay until clean weights, and likewise until the picture."""
+    when = {int(index): at for index, at in sent}
+    weights = [(when[index], (at - when[index]) * 1e3) for index, at in log.ready.items()]
+    preview = [(when[index], (at - when[index]) * 1e3) for index, at in log.shown]
+    return np.array(weights), np.array(preview)
+
+
+def p95(timed: Array, start_s: float, stop_s: float) -> float:
+    """Return the 95th percentile of the second column over a stretch of time."""
+    inside = timed[(timed[:, 0] >= start_s) & (timed[:, 0] < stop_s), 1]
+    return float(np.percentile(inside, 95)) if len(inside) else float("nan")
+
+
+def summary(log: Log, sent: Array) -> dict[str, float]:
+    """Return the figures of a run, the first seconds left out."""
+    begin, end = sent[0, 1] + SETTLED_S, sent[-1, 1]
+    stretch = min(WINDOW_S, (end - begin) / 2)
+    weights, preview = delays_ms(log, sent)
+    late, resident = np.array(log.late), np.array(log.resident)
+    found = {
+        "seconds": end - begin,
+        "weights_ms_p95": p95(weights, begin, end),
+        "preview_ms_p95": p95(preview, begin, end),
+        "pictures_per_s": float(np.sum(preview[:, 0] >= begin)) / (end - begin),
+        "event_loop_late_ms_p95": 1e3 * p95(late, begin, end),
+        "event_loop_late_ms_max": 1e3 * float(late[late[:, 0] >= begin, 1].max()),
+    }
+    for name, start in (("first", begin), ("last", end - stretch)):
+        found[f"weights_ms_p95_{name}"] = p95(weights, start, start + stretch)
+        found[f"preview_ms_p95_{name}"] = p95(preview, start, start + stretch)
+        inside = resident[(resident[:, 0] >= start) & (resident[:, 0] < start + stretch), 1]
+        found[f"resident_mb_{name}"] = float(np.median(inside))
+    return found
+
+
+def check_recording(recorded: Take, sent: Take, indices: Array) -> int:
+    """Prove that a recording is what was sent at the frames that arrived; returns how many sent frames are not in it."""
+    first = int(indices.min())
+    arrived = np.flatnonzero(~recorded.lost)
+    assert recorded.fps == sent.fps and set(arrived + first) <= {int(index) for index in indices}
+    np.testing.assert_array_equal(recorded.weights[arrived], sent.weights[arrived + first])
+    return len(indices) - len(arrived)
+
+
+def main(arguments: list[str]) -> int:
+    """Run the window for so long and print the figures; 1 where one of them misses its goal."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("seconds", type=float, nargs="?", default=60.0)
+    parser.add_argument("--record", action="store_true")
+    parser.add_argument("--flood", action="store_true")
+    options = parser.parse_args(arguments)
+    from PySide6.QtCore import QEventLoop, QTimer
+    from PySide6.QtWidgets import QApplication
+
+    from app.main_window import MainWindow
+    from app.settings import Settings
+
+    application = QApplication(["live"])
+    application.setStyle("Fusion")
+    context = multiprocessing.get_context("spawn")
+    told, tell = context.Pipe(duplex=False)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder)
+        window = MainWindow(demo.performance(), None, Settings(path / "live.ini"), unsaved=path / "unsaved")
+        window.show()
+        loop = QEventLoop()
+        window.inference.ready.connect(loop.quit)
+        loop.exec()
+        window.edits.live_tool()
+        with socket.socket(type=socket.SOCK_DGRAM) as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        window.live.port.setValue(port)
+        window.live.toggle()
+        if options.record:
+            window.live.toggle_recording()
+        log = Log()
+        order = [index for _, index in schedule(performance(options.seconds), NETWORK)]
+        kept = watch(window, order[0], log)
+        workers = [context.Process(target=send, args=(port, options.seconds, tell), daemon=True)]
+        if options.flood:
+            workers.append(context.Process(target=flood, args=(port, options.seconds + 10), daemon=True))
+        for worker in workers:
+            worker.start()
+        done = QTimer(interval=200)
+        done.timeout.connect(lambda: (told.poll() or not workers[0].is_alive()) and loop.quit())
+        done.start()
+        loop.exec()
+        sent = told.recv()
+        QTimer.singleShot(500, loop.quit)
+        loop.exec()
+        drops = window.live._listener.status().drops
+        if options.record:
+            window.live.toggle_recording()
+            missing = check_recording(window.session.take, performance(options.seconds), sent[:, 0])
+            print(f"recorded: equal to what was sent at every frame; {missing} of {len(sent)} sent frames not in it")
+        for timer in kept:
+            timer.stop()
+        window.session.undo.setClean()
+        window.close()
+        application.processEvents()
+        for worker in workers[1:]:
+            worker.terminate()
+    found = summary(log, sent)
+    print("\n".join(f"{name:24} {value:9.2f}" for name, value in found.items()))
+    print("load of the machine:", " ".join(f"{load:.1f}" for load in os.getloadavg()), f"on {os.cpu_count()} cores")
+    print("drops:", ", ".join(f"{count} {reason}" for reason, count in drops.items()) or "none")
+    return int(any(not found[name] <= goal for name, goal in GOALS.items()))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
