@@ -13,6 +13,7 @@ import socket
 import sys
 import tempfile
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -169,44 +170,25 @@ def check_recording(recorded: Take, sent: Take, indices: Array) -> int:
     return len(indices) - len(arrived)
 
 
-def main(arguments: list[str]) -> int:
-    """Run the window for so long and print the figures; 1 where one of them misses its goal."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("seconds", type=float, nargs="?", default=60.0)
-    parser.add_argument("--record", action="store_true")
-    parser.add_argument("--flood", action="store_true")
-    options = parser.parse_args(arguments)
+def run(seconds: float, *, record: bool, flooded: bool) -> tuple[Log, Array, dict[str, int]]:
+    """Return what was noted in a window that listened so long, what was sent, and what was dropped."""
     from PySide6.QtCore import QEventLoop, QTimer
     from PySide6.QtWidgets import QApplication
-
-    from app.main_window import MainWindow
-    from app.settings import Settings
 
     application = QApplication(["live"])
     application.setStyle("Fusion")
     context = multiprocessing.get_context("spawn")
     told, tell = context.Pipe(duplex=False)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder)
-        window = MainWindow(demo.performance(), None, Settings(path / "live.ini"), unsaved=path / "unsaved")
-        window.show()
-        loop = QEventLoop()
-        window.inference.ready.connect(loop.quit)
-        loop.exec()
-        window.edits.live_tool()
-        with socket.socket(type=socket.SOCK_DGRAM) as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        window.live.port.setValue(port)
-        window.live.toggle()
-        if options.record:
+    log, loop = Log(), QEventLoop()
+    with tempfile.TemporaryDirectory() as folder, opened(Path(folder), loop) as window:
+        port = listen(window)
+        if record:
             window.live.toggle_recording()
-        log = Log()
-        order = [index for _, index in schedule(performance(options.seconds), NETWORK)]
-        kept = watch(window, order[0], log)
-        workers = [context.Process(target=send, args=(port, options.seconds, tell), daemon=True)]
-        if options.flood:
-            workers.append(context.Process(target=flood, args=(port, options.seconds + 10), daemon=True))
+        order = schedule(performance(seconds), NETWORK)
+        kept = watch(window, order[0][1], log)
+        workers = [context.Process(target=send, args=(port, seconds, tell), daemon=True)]
+        if flooded:
+            workers.append(context.Process(target=flood, args=(port, seconds + 10), daemon=True))
         for worker in workers:
             worker.start()
         done = QTimer(interval=200)
@@ -217,17 +199,52 @@ def main(arguments: list[str]) -> int:
         QTimer.singleShot(500, loop.quit)
         loop.exec()
         drops = window.live._listener.status().drops
-        if options.record:
+        if record:
             window.live.toggle_recording()
-            missing = check_recording(window.session.take, performance(options.seconds), sent[:, 0])
+            missing = check_recording(window.session.take, performance(seconds), sent[:, 0])
             print(f"recorded: equal to what was sent at every frame; {missing} of {len(sent)} sent frames not in it")
         for timer in kept:
             timer.stop()
-        window.session.undo.setClean()
-        window.close()
         application.processEvents()
         for worker in workers[1:]:
             worker.terminate()
+    return log, sent, drops
+
+
+@contextmanager
+def opened(folder: Path, loop):  # type: ignore[no-untyped-def]
+    """Give a window whose networks are loaded."""
+    from app.main_window import MainWindow
+    from app.settings import Settings
+
+    window = MainWindow(demo.performance(), None, Settings(folder / "live.ini"), unsaved=folder / "unsaved")
+    window.show()
+    window.inference.ready.connect(loop.quit)
+    loop.exec()
+    yield window
+    window.session.undo.setClean()
+    window.close()
+
+
+def listen(window) -> int:  # type: ignore[no-untyped-def]
+    """Listen on a free port."""
+    window.edits.live_tool()
+    with socket.socket(type=socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = int(probe.getsockname()[1])
+    window.live.port.setValue(port)
+    window.live.toggle()
+    return port
+
+
+def main(arguments: list[str]) -> int:
+    """Run the window for so long and print the figures; 1 where one of them misses its goal."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("seconds", type=float, nargs="?", default=60.0)
+    parser.add_argument("--record", action="store_true")
+    parser.add_argument("--flood", action="store_true")
+    options = parser.parse_args(arguments)
+    log, sent, drops = run(options.seconds, record=options.record, flooded=options.flood)
     found = summary(log, sent)
     print("\n".join(f"{name:24} {value:9.2f}" for name, value in found.items()))
     print("load of the machine:", " ".join(f"{load:.1f}" for load in os.getloadavg()), f"on {os.cpu_count()} cores")
