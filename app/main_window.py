@@ -300,6 +300,7 @@ class MainWindow(QMainWindow):
     def _show_tool(self) -> None:
         for name in TOOLS:
             self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
+        self.actions_by_name["show_removed"].setChecked(self.session.shows_removed)
 
     def light_theme(self) -> None:
         """Switch between dark and light."""

@@ -13,8 +13,8 @@ import socket
 import sys
 import tempfile
 import time
+from collections import deque
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
 
@@ -44,7 +44,7 @@ def performance(seconds: float) -> Take:
 
 
 def send(port: int, seconds: float, tell: Connection) -> None:
-    """Send a performance as a phone would; tells (packets, 2) index and time of sending at the end."""
+    """Send a performance as a phone would; tells (packets, 3) index, time of sending and when that was due."""
     take = performance(seconds)
     encoded = list(packets(take))
     sent = []
@@ -52,7 +52,7 @@ def send(port: int, seconds: float, tell: Connection) -> None:
         began = time.perf_counter() + 1.0
         for due, index in schedule(take, NETWORK):
             time.sleep(max(0.0, began + due - time.perf_counter()))
-            sent.append((index, time.perf_counter()))
+            sent.append((index, time.perf_counter(), began + due))
             out.sendto(encoded[index], ("127.0.0.1", port))
     tell.send(np.array(sent))
 
@@ -74,15 +74,37 @@ def resident_mb() -> float:
         return int(file.read().split()[1]) * resource.getpagesize() / 1e6
 
 
-@dataclass
-class Log:
-    """What is noted while the window runs; times on the clock of `time.perf_counter`."""
+class Column:
+    """Pairs of numbers, room for all of them from the start: what is noted must not look like growing memory."""
 
-    ready: dict[int, float] = field(default_factory=dict)  # when a frame's clean weights were there
-    arrived: dict[float, int] = field(default_factory=dict)  # which frame arrived when
-    shown: list[tuple[int, float]] = field(default_factory=list)  # which frame was on screen when
-    late: list[tuple[float, float]] = field(default_factory=list)  # when the event loop ticked, and by how much late, s
-    resident: list[tuple[float, float]] = field(default_factory=list)  # MB
+    def __init__(self, room: int) -> None:
+        self._rows, self._count = np.zeros((room, 2)), 0
+        self._rows += 1e-9  # so that the pages are really there
+
+    def add(self, first: float, second: float) -> None:
+        if self._count < len(self._rows):
+            self._rows[self._count] = first, second
+            self._count += 1
+
+    @property
+    def rows(self) -> Array:
+        return self._rows[: self._count]
+
+
+class Log:
+    """What is noted while the window runs; times on the clock of `time.perf_counter`.
+
+    Attributes
+    ----------
+    ready, shown : frame, and when its clean weights were there, or its picture on screen
+    late : when the event loop ticked, and by how much late, seconds
+    resident : when, and MB
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self.ready, self.shown = Column(round(2 * seconds * FPS)), Column(round(2 * seconds * FPS))
+        self.late, self.resident = Column(round(2000 * seconds / TICK_MS)), Column(round(2 * seconds) + 60)
+        self.arrived: deque[tuple[float, int]] = deque(maxlen=1024)  # which frame came when
 
 
 def watch(window, first: int, log: Log) -> list[object]:  # type: ignore[no-untyped-def]
@@ -96,18 +118,19 @@ def watch(window, first: int, log: Log) -> list[object]:  # type: ignore[no-unty
         new = taken()
         for frame in new:
             index = first + round(frame.time_s * FPS)
-            log.arrived[frame.arrived_s] = index
-            log.ready[index] = frame.arrived_s + frame.latency_ms / 1e3
+            log.arrived.append((frame.arrived_s, index))
+            log.ready.add(index, frame.arrived_s + frame.latency_ms / 1e3)
         return new
 
     def drawn(wanted, _: object) -> None:  # type: ignore[no-untyped-def]
-        if wanted.since in log.arrived:
-            log.shown.append((log.arrived[wanted.since], time.perf_counter()))
+        index = next((index for arrived_s, index in log.arrived if arrived_s == wanted.since), None)
+        if index is not None:
+            log.shown.add(index, time.perf_counter())
 
     def tick() -> None:
         now = time.perf_counter()
-        if log.late or ticked:
-            log.late.append((now, max(0.0, now - ticked[-1] - TICK_MS / 1e3)))
+        if ticked:
+            log.late.add(now, max(0.0, now - ticked[-1] - TICK_MS / 1e3))
         ticked[:] = [now]
 
     ticked: list[float] = []
@@ -116,7 +139,7 @@ def watch(window, first: int, log: Log) -> list[object]:  # type: ignore[no-unty
     timers = []
     for interval, kind, slot in (
         (TICK_MS, Qt.TimerType.PreciseTimer, tick),
-        (1000, Qt.TimerType.CoarseTimer, lambda: log.resident.append((time.perf_counter(), resident_mb()))),
+        (1000, Qt.TimerType.CoarseTimer, lambda: log.resident.add(time.perf_counter(), resident_mb())),
     ):
         timer = QTimer(window, interval=interval, timerType=kind)
         timer.timeout.connect(slot)
@@ -127,10 +150,12 @@ def watch(window, first: int, log: Log) -> list[object]:  # type: ignore[no-unty
 
 def delays_ms(log: Log, sent: Array) -> tuple[Array, Array]:
     """Return (n, 2) time of sending and delay until clean weights, and likewise until the picture."""
-    when = {int(index): at for index, at in sent}
-    weights = [(when[index], (at - when[index]) * 1e3) for index, at in log.ready.items()]
-    preview = [(when[index], (at - when[index]) * 1e3) for index, at in log.shown]
-    return np.array(weights), np.array(preview)
+    when = {int(index): at for index, at, _ in sent}
+    weights, preview = (
+        np.array([(when[int(index)], (at - when[int(index)]) * 1e3) for index, at in column.rows])
+        for column in (log.ready, log.shown)
+    )
+    return weights, preview
 
 
 def p95(timed: Array, start_s: float, stop_s: float) -> float:
@@ -140,11 +165,12 @@ def p95(timed: Array, start_s: float, stop_s: float) -> float:
 
 
 def summary(log: Log, sent: Array) -> dict[str, float]:
-    """Return the figures of a run, the first seconds left out."""
+    """Return the figures of a run, the first seconds left out; how late the sender is tells how busy the machine is."""
     begin, end = sent[0, 1] + SETTLED_S, sent[-1, 1]
     stretch = min(WINDOW_S, (end - begin) / 2)
     weights, preview = delays_ms(log, sent)
-    late, resident = np.array(log.late), np.array(log.resident)
+    late, resident = log.late.rows, log.resident.rows
+    sending = np.stack([sent[:, 1], (sent[:, 1] - sent[:, 2]) * 1e3], axis=1)
     found = {
         "seconds": end - begin,
         "weights_ms_p95": p95(weights, begin, end),
@@ -156,6 +182,7 @@ def summary(log: Log, sent: Array) -> dict[str, float]:
     for name, start in (("first", begin), ("last", end - stretch)):
         found[f"weights_ms_p95_{name}"] = p95(weights, start, start + stretch)
         found[f"preview_ms_p95_{name}"] = p95(preview, start, start + stretch)
+        found[f"sender_late_ms_p95_{name}"] = p95(sending, start, start + stretch)
         inside = resident[(resident[:, 0] >= start) & (resident[:, 0] < start + stretch), 1]
         found[f"resident_mb_{name}"] = float(np.median(inside))
     return found
@@ -179,7 +206,7 @@ def run(seconds: float, *, record: bool, flooded: bool) -> tuple[Log, Array, dic
     application.setStyle("Fusion")
     context = multiprocessing.get_context("spawn")
     told, tell = context.Pipe(duplex=False)
-    log, loop = Log(), QEventLoop()
+    log, loop = Log(seconds + 60), QEventLoop()
     with tempfile.TemporaryDirectory() as folder, opened(Path(folder), loop) as window:
         port = listen(window)
         if record:
