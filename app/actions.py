@@ -65,6 +65,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("clean_tool", "Clean", "Tools", ("C",), "Clean", True, twin="retake clean"),
     Action("live_tool", "Live", "Tools", ("Ctrl+Shift+L",), "Live", True, twin="retake live"),
     Action("smooth", "Smooth", "Tools", ("Ctrl+B",), twin="retake smooth"),
+    Action("show_removed", "Show what Clean removes", "View", ("Shift+R",), checkable=True, twin="retake clean --json"),
     Action("expand_lane", "Show or hide the weights below", "View", ("W",)),
     Action("play", "Play or pause", "Playback", ("Space",), "▶", True, twin="retake render -o OUT.mp4"),
     Action("play_backwards", "Play backwards", "Playback", ("J",)),

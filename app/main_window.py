@@ -208,6 +208,7 @@ class MainWindow(QMainWindow):
         self.edits.told.connect(self.status["notice"].setText)
         self.time.looping = self.actions_by_name["loop"].isChecked
         self.live.face.connect(self.preview.show_live)
+        self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
         self.files.character_chosen.connect(self.preview.show_character)
         self.keeper.saved.connect(self._show_saved)
@@ -317,6 +318,7 @@ class MainWindow(QMainWindow):
     def _show_tool(self) -> None:
         for name in TOOLS:
             self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
+        self.actions_by_name["show_removed"].setChecked(self.session.shows_removed)
 
     def _wear(self, colours: theme.Palette) -> None:
         self.colours = colours

@@ -65,6 +65,7 @@ class Session(QObject):
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
     radius_frames, strength, exact : the Drag tool's brush
+    shows_removed : whether the Clean tool draws what it would remove
     audio : the recording of the sound, None where there is none, or it is not found
     video : the file of the reference video, likewise
     sliding : the kind of what is being moved in time, and where it is by now; None between moves
@@ -81,6 +82,7 @@ class Session(QObject):
         self.undo = QUndoStack(self)
         self.path: Path | None = None
         self.strength, self.exact, self.tool = 1.0, False, "drag"
+        self.shows_removed = True
         self._restoring = False
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
@@ -311,6 +313,12 @@ class Session(QObject):
         """Let the mouse work with another tool."""
         if name != self.tool:
             self.tool = name
+            self.changed.emit(Change.TOOL)
+
+    def show_removed(self, *, shown: bool) -> None:
+        """Let the Clean tool draw what it would remove, or not."""
+        if shown != self.shows_removed:
+            self.shows_removed = shown
             self.changed.emit(Change.TOOL)
 
     def set_brush(
