@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
+from engine.character import Character
 from engine.controls import CONTROLS, bundled_measurer
 from engine.formats.audio import Audio
 from engine.project import Contents, Marks, Replayed, Span
@@ -39,6 +40,7 @@ class Change(Flag):
     SAVED = auto()
     MEDIA = auto()  # sound or reference video
     MARKS = auto()  # spans, pins, notes, media or the verdict
+    CHARACTER = auto()  # whose head the weights are for
 
 
 class Session(QObject):
@@ -62,6 +64,7 @@ class Session(QObject):
     audio, audio_offset_s : the recording of the sound, and the time in the take at which it begins
     video, video_offset_s : the file of the reference video, likewise
     marks : spans, pins, notes, media and verdict
+    character : whose head the weights are for; None for the bundled one
     """
 
     changed = Signal(object)
@@ -72,6 +75,7 @@ class Session(QObject):
         self.path: Path | None = None
         self.strength, self.exact, self.tool = 1.0, False, "drag"
         self._restoring = False
+        self.character: Character | None = None
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
 
@@ -91,11 +95,12 @@ class Session(QObject):
         self.radius_frames = max(2, round(BRUSH_S * take.fps))
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
+        other_head, self.character = self.character is not None, None
         self.audio: Audio | None = None
         self.video: Path | None = None
         self.audio_offset_s = self.video_offset_s = 0.0
         self.undo.clear()
-        self.changed.emit(Change.TAKE)
+        self.changed.emit(Change.TAKE | Change.CHARACTER if other_head else Change.TAKE)
 
     def restore(self, contents: Contents, path: Path | None, steps: Iterable[QUndoCommand], state: Replayed) -> None:
         """Replace everything by what a project holds: its edits as `steps`, which come to `state`."""
@@ -128,6 +133,11 @@ class Session(QObject):
         if marks != self.marks:
             self.marks = marks
             self.changed.emit(Change.MARKS)
+
+    def play_on(self, character: Character | None) -> None:
+        """Say whose head the weights are for; None is the bundled one."""
+        self.character = character
+        self.changed.emit(Change.CHARACTER)
 
     def _on_clean_changed(self, _: bool) -> None:
         self.changed.emit(Change.SAVED)
