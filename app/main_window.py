@@ -6,13 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import (
-    QCloseEvent,
-    QDragEnterEvent,
-    QDropEvent,
-    QKeyEvent,
-    QShowEvent,
-)
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QShowEvent
 from PySide6.QtWidgets import (
     QApplication,
     QFrame,
@@ -49,6 +43,7 @@ from app.pins.section import PinsSection
 from app.playback.media import Media
 from app.preview.panel import PreviewPanel
 from app.preview.reference import ReferencePanel
+from app.retarget.actions import RetargetActions
 from app.session import Change, Session
 from app.settings import Settings
 from app.spans.filling import Filling
@@ -101,12 +96,14 @@ class MainWindow(QMainWindow):
         self.spans = SpansSection(self.session, self.filling)
         self.live = LiveSection(self.session)
         self.notes = NotesSection(self.session)
+        self.retarget = RetargetActions(self.session, self)
         sections = (
             self.brush,
             self.value,
             self.pins,
             self.clean,
             self.live,
+            *self.retarget.sections,
             self.smoothing,
             self.spans,
             FactsSection(self.session),
@@ -128,7 +125,7 @@ class MainWindow(QMainWindow):
     # --- building
 
     def _do(self, name: str) -> None:
-        owners = (self, self.files, self.edits, self.time)
+        owners = (self, self.files, self.edits, self.time, self.retarget)
         owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
 
@@ -193,7 +190,7 @@ class MainWindow(QMainWindow):
         self.session.changed.connect(self._on_change)
         self.inference.failed.connect(self.notices.tell)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        for part in (self.preview, self.media, self.reference):
+        for part in (self.preview, self.media, self.reference, self.retarget):
             part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self._timed)
         self.transport.changed.connect(self._show_transport)
@@ -209,6 +206,11 @@ class MainWindow(QMainWindow):
         self.live.failed.connect(self.notices.tell)
         self.live.face.connect(self.preview.show_live)
         self.live.recorded.connect(self.files.open_recording)
+        self.retarget.shown.connect(self.preview.show_sides)
+        self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
+        self.preview.picked.connect(self.retarget.pick)
+        self.preview.dot_clicked.connect(self.retarget.retargeting.choose)
+        self.edits.stop_else = self.retarget.retargeting.cancel
         self.files.character_chosen.connect(self.preview.show_character)
         self.keeper.failed.connect(self.notices.tell)
         self.files.told.connect(self.notices.tell)
@@ -275,6 +277,7 @@ class MainWindow(QMainWindow):
         self.reference.close_reader()
         self.filling.close()
         self.live.stop()
+        self.retarget.retargeting.close()
         self.preview.close_renderer()
 
     # --- the window

@@ -299,9 +299,7 @@ class PreviewPanel(QFrame):
         elif wanted.shot.size[0] > 0.75 * self.face.width() * self.devicePixelRatioF():
             self._quick_ms = spent
         size = self.face.width(), self.face.height()
-        self.face.show_picture(
-            picture, Overlay.of(wanted.sides, wanted.shot.camera, *size) if wanted.sides else None
-        )
+        self.face.show_picture(picture, Overlay.of(wanted.sides, wanted.shot.camera, *size) if wanted.sides else None)
         if wanted.since:
             self.timed.emit((time.perf_counter() - wanted.since) * 1e3)
 

@@ -11,7 +11,18 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.retarget.carry import Carried, Carrier, Carry, Performance, Stopped, Target, opened, points_of, posed, with_place
+from app.retarget.carry import (
+    Carried,
+    Carrier,
+    Carry,
+    Performance,
+    Stopped,
+    Target,
+    opened,
+    points_of,
+    posed,
+    with_place,
+)
 from app.retarget.commands import KeepCommand, TargetCommand
 from app.session import Change, Session
 from engine.character import bundled
@@ -81,6 +92,7 @@ class Retargeting(QObject):
         self._performance: Performance | None = None
         self._solving: Carry | None = None
         self._live_for: tuple[object, ...] = ()
+        self._live_span = (0, 0)
         self._carrier, self._live_carrier = Carrier(), Carrier()
         self._whole, self._short = (LatestWins(_run, name=name) for name in ("retarget", "retarget live"))
         for thread in (self._whole, self._short):
@@ -305,12 +317,12 @@ class Retargeting(QObject):
         if self.method == LABELS and self.capture is None:
             return
         wanted = (self.performance, self.target.places, self.target.head, self.matching)
-        asked = self._live_for[4] if self._live_for[:4] == wanted else (0, 0)
+        asked = self._live_span if self._live_for == wanted else (0, 0)
         inside = asked[0] <= playhead and (playhead + AHEAD_FRAMES < asked[1] or asked[1] == frames)
         if inside and playhead < asked[1]:
             return
         span = (max(0, playhead - LIVE_FRAMES), min(frames, playhead + LIVE_FRAMES + 1))
-        self._live_for = (*wanted, span)
+        self._live_for, self._live_span = wanted, span
         wish = Carry(self.performance, self.target, self.matching, span)
         self._short.submit(Errand(lambda: self._live_carrier(wish, _nobody), lambda made: self._show_live(wish, made)))
 

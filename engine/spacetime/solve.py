@@ -76,7 +76,9 @@ class MovementMatcher:
         weights = self._unbounded(right, given)
         if self._bounds is None:
             return weights
-        return BoundedSolver(self._system, self._held, self._bounds, self._factorise, self._pass_on).solve(weights, right)
+        return BoundedSolver(self._system, self._held, self._bounds, self._factorise, self._pass_on).solve(
+            weights, right
+        )
 
     def _unbounded(self, right: Array, given: Array) -> Array:
         if self._modes is not None:

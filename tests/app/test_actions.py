@@ -8,9 +8,10 @@ from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
 from app.edit_actions import EditActions
 from app.file_actions import FileActions
 from app.main_window import MainWindow
+from app.retarget.actions import RetargetActions
 from app.time_actions import TimeActions
 
-OWNERS = (MainWindow, FileActions, EditActions, TimeActions)
+OWNERS = (MainWindow, FileActions, EditActions, TimeActions, RetargetActions)
 
 
 @pytest.mark.parametrize("preset", list(PRESETS))
