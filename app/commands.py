@@ -10,7 +10,19 @@ from PySide6.QtGui import QUndoCommand
 
 from app.session import MEDIA, Session
 from engine.controls import bundled_measurer
-from engine.project import MARK, Contents, Edit, Marks, Replayed, mark_edit, marks_of
+from engine.project import (
+    MARK,
+    Contents,
+    Edit,
+    Marks,
+    Replayed,
+    VisemeChange,
+    change_between,
+    mark_edit,
+    marks_of,
+    viseme_edit,
+)
+from engine.speech.lane import VisemeLane
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -117,8 +129,44 @@ def put_marks(session: Session, marks: Marks, *, instead_of: Marks) -> None:
     session.set_marks(marks)
 
 
+class VisemesCommand(QUndoCommand):
+    """Puts another visemes lane in place, or none.
+
+    Parameters
+    ----------
+    session : whose visemes
+    lane : what they become
+    title : what the user did, as the Undo menu shows it
+    """
+
+    def __init__(self, session: Session, lane: VisemeLane | None, title: str) -> None:
+        super().__init__(title)
+        self._session, self._change = session, change_between(session.visemes, lane)
+        self.edit = viseme_edit(title, self._change)
+
+    @classmethod
+    def restored(cls, session: Session, edit: Edit, change: VisemeChange) -> VisemesCommand:
+        """Return the command of a stored edit."""
+        command = cls.__new__(cls)
+        QUndoCommand.__init__(command, edit.title)
+        command._session, command._change, command.edit = session, change, edit
+        return command
+
+    def redo(self) -> None:
+        """Do it, first or again."""
+        self._session.set_visemes(self._change.applied(self._session.visemes))
+
+    def undo(self) -> None:
+        """Take it back."""
+        self._session.set_visemes(self._change.inverse.applied(self._session.visemes))
+
+
 def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[QUndoCommand]:
     """Yield the commands of a project's edits, oldest first."""
-    for edit, before in zip(contents.edits, state.before, strict=True):
-        is_mark = edit.kind == MARK
-        yield MarkCommand.restored(session, edit) if is_mark else EditCommand.restored(session, edit, before)
+    for edit, before, change in zip(contents.edits, state.before, state.changes, strict=True):
+        if change is not None:
+            yield VisemesCommand.restored(session, edit, change)
+        elif edit.kind == MARK:
+            yield MarkCommand.restored(session, edit)
+        else:
+            yield EditCommand.restored(session, edit, before)

@@ -15,7 +15,7 @@ from app.playback.media import Media
 from app.session import Session
 from app.settings import Settings
 from engine.errors import EngineError
-from engine.formats import FORMATS, read_take, write_take
+from engine.formats import FORMATS, cues, read_take, write_take
 from engine.formats.characters.opening import character_of
 from engine.project import ENDING
 from engine.take import Take
@@ -36,6 +36,7 @@ class FileActions(QObject):
     told = Signal(str, str)  # sentence, advice
     opened = Signal()
     character_chosen = Signal(object)  # a Character, or None for the bundled one
+    cues_dropped = Signal(object)  # the Path of a file that says what is said when
 
     def __init__(self, session: Session, keeper: Keeper, media: Media, settings: Settings, window: QWidget) -> None:
         super().__init__()
@@ -79,6 +80,8 @@ class FileActions(QObject):
             self._media.attach("audio", path)
         elif ending in media.FILM_ENDINGS:
             self._media.attach("video", path)
+        elif ending in cues.READERS:
+            self.cues_dropped.emit(path)
         else:
             self.load(path)
 

@@ -5,13 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import (
-    QCloseEvent,
-    QDragEnterEvent,
-    QDropEvent,
-    QKeyEvent,
-    QShowEvent,
-)
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QShowEvent
 from PySide6.QtWidgets import (
     QApplication,
     QFrame,
@@ -30,6 +24,7 @@ from app.curves.panel import CurvesPanel
 from app.curves.tools import TOOLS
 from app.edit_actions import EditActions
 from app.file_actions import FileActions
+from app.flagging import Flagging
 from app.inference import Inference
 from app.inspector.brush import BrushSection
 from app.inspector.facts import FactsSection
@@ -48,6 +43,7 @@ from app.pins.section import PinsSection
 from app.playback.media import Media
 from app.preview.panel import PreviewPanel
 from app.preview.reference import ReferencePanel
+from app.retarget.actions import RetargetActions
 from app.session import MEDIA, Change, Session
 from app.settings import Settings
 from app.settings_actions import SettingsActions
@@ -58,6 +54,7 @@ from app.theme import GRID
 from app.time_actions import TimeActions
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
+from app.viseme_actions import VisemeActions
 from engine.take import Take
 
 
@@ -97,6 +94,8 @@ class MainWindow(QMainWindow):
         self.timeline = Timeline(self.session, self.colours, gutter_px=GUTTER_PX)
         self.filling = Filling(self.session)
         self.edits = EditActions(self.session, self.inference, self.curves, self.filling)
+        self.flagging = Flagging(self.session)
+        self.visemes = VisemeActions(self.session, self.timeline.visemes, self)
         self.time = TimeActions(self.session, self.transport, self.filling)
         self.brush, self.value = BrushSection(self.session), ValueSection(self.session)
         self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
@@ -105,12 +104,14 @@ class MainWindow(QMainWindow):
         self.live = LiveSection(self.session)
         self.attached = MediaSection(self.session)
         self.notes = NotesSection(self.session)
+        self.retarget = RetargetActions(self.session, self)
         sections = (
             self.brush,
             self.value,
             self.pins,
             self.clean,
             self.live,
+            *self.retarget.sections,
             self.smoothing,
             self.spans,
             FactsSection(self.session),
@@ -134,7 +135,7 @@ class MainWindow(QMainWindow):
     # --- building
 
     def _do(self, name: str) -> None:
-        owners = (self, self.files, self.sound, self.edits, self.time, self.preferences)
+        owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.retarget, self.preferences)
         owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
 
@@ -183,19 +184,12 @@ class MainWindow(QMainWindow):
 
     def _connect(self) -> None:
         self.session.changed.connect(self._on_change)
-        self.inference.failed.connect(self.notices.tell)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        for part in (self.preview, self.media, self.reference):
+        shown = (self.preview, self.media, self.reference, self.live, self.retarget)
+        for part in (*shown, self.inference, self.filling, self.keeper, self.visemes, self.timeline.visemes):
             part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self.status.timed)
-        self.media.missing_changed.connect(self._show_missing)
-        self.missing.locate.connect(self.sound.locate)
-        self.missing.accept.connect(self.sound.accept)
-        self.missing.detach.connect(self.media.detach)
-        self.attached.detached.connect(self.media.detach)
-        self.reference.detached.connect(self.sound.detach_video)
-        self.attached.moved.connect(self.media.move)
-        self.timeline.slid.connect(self.media.settle)
+        self._connect_media()
         self.notes.author = lambda: self.settings.author
         self.preferences.themed.connect(self._wear)
         for clock in (self.timeline, self.status):
@@ -209,14 +203,19 @@ class MainWindow(QMainWindow):
         self.edits.cutoff_hz = self.smoothing.cutoff.value
         self.edits.told.connect(self.status["notice"].setText)
         self.time.looping = self.actions_by_name["loop"].isChecked
-        self.filling.failed.connect(self.notices.tell)
-        self.live.failed.connect(self.notices.tell)
         self.live.face.connect(self.preview.show_live)
+        self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
+        self.retarget.shown.connect(self.preview.show_sides)
+        self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
+        self.preview.picked.connect(self.retarget.pick)
+        self.preview.dot_clicked.connect(self.retarget.retargeting.choose)
+        self.edits.stop_else = self.retarget.retargeting.cancel
         self.files.character_chosen.connect(self.preview.show_character)
-        self.keeper.failed.connect(self.notices.tell)
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
+        self.timeline.visemes.wanted.connect(self._do)
+        self.files.cues_dropped.connect(self.visemes.attach)
         self.files.told.connect(self.notices.tell)
         self.files.opened.connect(self._show_opened)
         self.filling.changed.connect(self._show_filling)
@@ -231,6 +230,16 @@ class MainWindow(QMainWindow):
         application = QApplication.instance()
         if application is not None:
             application.installEventFilter(self)
+
+    def _connect_media(self) -> None:
+        self.media.missing_changed.connect(self._show_missing)
+        self.missing.locate.connect(self.sound.locate)
+        self.missing.accept.connect(self.sound.use_found)
+        self.missing.detach.connect(self.media.detach)
+        self.attached.detached.connect(self.media.detach)
+        self.reference.detached.connect(self.sound.detach_video)
+        self.attached.moved.connect(self.media.move)
+        self.timeline.slid.connect(self.media.settle)
 
     def showEvent(self, event: QShowEvent) -> None:
         """Load the networks once the window can be seen."""
@@ -293,11 +302,18 @@ class MainWindow(QMainWindow):
         self.media.close()
         self.reference.close_reader()
         self.filling.close()
+        self.flagging.close()
+        self.visemes.close()
         self.live.stop()
+        self.retarget.retargeting.close()
         self.preview.close_renderer()
         self.preferences.close()
 
     # --- the window
+
+    def quit(self) -> None:
+        """End the program; what is not saved is kept for the next start."""
+        self.close()
 
     def fill(self) -> None:
         """Fill the chosen span, or the selection."""
@@ -319,6 +335,7 @@ class MainWindow(QMainWindow):
     def _show_tool(self) -> None:
         for name in TOOLS:
             self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
+        self.actions_by_name["show_removed"].setChecked(self.session.shows_removed)
 
     def _wear(self, colours: theme.Palette) -> None:
         self.colours = colours

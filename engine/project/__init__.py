@@ -3,24 +3,26 @@
 from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (
     MARK,
+    VISEMES,
     Contents,
     Edit,
     Marks,
     Media,
     Note,
     Pin,
-    Replayed,
     Span,
     Summary,
     mark_edit,
     marks_of,
-    replay,
 )
+from engine.project.replaying import Replayed, replay
 from engine.project.store import ENDING, InUseError, Project, create, delete, peek
+from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
 __all__ = [
     "ENDING",
     "MARK",
+    "VISEMES",
     "Contents",
     "Edit",
     "Found",
@@ -33,7 +35,9 @@ __all__ = [
     "Replayed",
     "Span",
     "Summary",
+    "VisemeChange",
     "attach",
+    "change_between",
     "create",
     "delete",
     "find",
@@ -43,4 +47,5 @@ __all__ = [
     "peek",
     "placed",
     "replay",
+    "viseme_edit",
 ]

@@ -13,6 +13,7 @@ from engine.controls import CONTROLS
 from engine.take import SHAPES, Array, Take
 
 MARK = "mark"  # kind of an edit whose inputs are marks before and after
+VISEMES = "visemes"  # kind of an edit whose inputs are a step on the visemes lane
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,36 +154,3 @@ class Summary:
     fps: float
     edits: int
     changed: datetime
-
-
-@dataclass(frozen=True, eq=False)
-class Replayed:
-    """What edits come to: the take in effect, the asked values, and the rows that each edit replaced.
-
-    Attributes
-    ----------
-    take : with the edits up to the position
-    asked : (frames, 8) mm, NaN where nothing was asked
-    before : of each edit the (frames, 52) weights and (frames, 8) asked values that it found
-    """
-
-    take: Take
-    asked: Array
-    before: tuple[tuple[Array, Array], ...]
-
-
-def replay(contents: Contents) -> Replayed:
-    """Return the state at the project's position, bit for bit as it was left."""
-    weights = contents.original.weights.copy()
-    asked = np.full((len(weights), len(CONTROLS)), np.nan)
-    before: list[tuple[Array, Array]] = []
-    shown = (weights.copy(), asked.copy())
-    for index, edit in enumerate(contents.edits):
-        rows = slice(edit.start, edit.stop)
-        before.append((weights[rows].copy(), asked[rows].copy()))
-        weights[rows], asked[rows] = edit.weights, edit.asked
-        if index < contents.position:
-            shown[0][rows], shown[1][rows] = edit.weights, edit.asked
-    for array in shown:
-        array.flags.writeable = False
-    return Replayed(contents.original.with_weights(shown[0]), shown[1], tuple(before))

@@ -15,6 +15,7 @@ from engine.errors import EngineError
 from engine.formats.livelink import DAY_S, MAX_COLUMNS, Origin
 from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
 from engine.project.records import MARK, Contents, Edit, Marks, Media, Note, Pin, Span, Summary, marks_of
+from engine.project.replaying import said
 from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
 MAX_FRAMES = 1_000_000  # over four hours at 60 fps
@@ -43,6 +44,7 @@ def read_contents(database: sqlite3.Connection, budget: Budget) -> Contents:
     try:
         take = _read_take(database, budget)
         edits = tuple(_read_edits(database, len(take), budget))
+        _require_said(edits)
         position, verdict = one(database, "SELECT position, verdict FROM state")
         _require(0 <= position <= len(edits), "its place in the undo history is not there")
         return Contents(take, edits, position, _read_marks(database, verdict, len(take), budget))
@@ -213,6 +215,14 @@ def _require_sound(marks: Marks, length: int) -> None:
     texts += [text for note in marks.notes for text in (note.author, note.time, note.text)]
     texts += [text for entry in marks.media for text in (entry.kind, entry.path, entry.sha256)]
     _require(all(isinstance(text, str) for text in (*texts, marks.verdict)), "a mark is not what it should be")
+
+
+def _require_said(edits: tuple[Edit, ...]) -> None:
+    """Check that each step on the visemes fits the lane that it finds."""
+    try:
+        said(edits)
+    except (KeyError, TypeError, ValueError) as error:
+        raise DamagedError("an edit does not say what it did to the visemes") from error
 
 
 def _is_pose(pose: object) -> bool:
