@@ -129,15 +129,15 @@ class Keeper(QObject):
         return self._kept.project if self._kept is not None else None
 
     def when_idle(self, then: Callable[[], None]) -> bool:
-        """Do something when nothing is being written any more; returns whether that is so already, and it is done.
+        """Do something when nothing is being written any more; returns whether nothing is.
 
         What waits is dropped where a save fails.
         """
+        self._afterwards.append(then)
         if not self._work.finish(PATIENCE_S):
-            self._afterwards.append(then)
             return False
         QCoreApplication.sendPostedEvents(self, QEvent.Type.MetaCall.value)  # what came of it is heard of first
-        then()
+        self._go_on()
         return True
 
     # --- saving and opening
@@ -278,10 +278,10 @@ class Keeper(QObject):
         self.saving_changed.emit()
 
     def _go_on(self) -> None:
-        if self._afterwards and self._work.idle:
+        if self._work.idle:
             waiting, self._afterwards = self._afterwards, []
             for then in waiting:
-                self.when_idle(then)
+                then()
 
     def _adopt(self, opened: Project, path: Path | None, *, saved: bool) -> None:
         self._detach(delete=False)
