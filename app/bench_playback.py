@@ -12,6 +12,7 @@ import numpy as np
 
 from app.playback.clock import Pull
 from app.playback.device import LATENCY_S
+from app.preview.worker import Wanted
 from engine.controls import CONTROLS
 from engine.speed import Speed
 from engine.speed.drag import performance_of
@@ -96,8 +97,14 @@ def playback_job(seconds: float = PLAYED_S) -> list[Speed]:
         window.session.attach_audio(Audio(samples.astype(np.float32), RATE))
         ratio = window.preview.face.devicePixelRatioF()
         window.preview.face.setFixedSize(round(SIZE / ratio), round(SIZE / ratio))
-        shown: list[float] = []
-        window.preview.drawing.done.connect(lambda *_: shown.append(time.perf_counter()))
+        shown: list[bytes] = [b""]  # each face once, however often it is drawn
+
+        def drawn(wanted: Wanted, _: object) -> None:
+            face = wanted.shot.faces[0]
+            if face is not None and face.tobytes() != shown[-1]:
+                shown.append(face.tobytes())
+
+        window.preview.drawing.done.connect(drawn)
         window.transport.set_loop(True)
         window.transport.toggle()
         QTimer.singleShot(round(seconds * 1e3), application.quit)
@@ -105,7 +112,7 @@ def playback_job(seconds: float = PLAYED_S) -> list[Speed]:
         application.exec()
         spent_s = time.perf_counter() - began
         window.transport.run(0.0)
-        pictures = sum(at < began + spent_s for at in shown)
+        pictures = len(shown) - 1
         window.close()
     (sink,) = sinks
     return [
