@@ -6,22 +6,19 @@ import tempfile
 import threading
 import time
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 
 from app.playback.clock import Pull
 from app.playback.device import LATENCY_S
 from app.preview.worker import Wanted
-from engine.controls import CONTROLS
 from engine.speed import Speed
 from engine.speed.drag import performance_of
-from engine.take import SHAPES
 
 PLAYED_S = 30.0
 RATE, BLOCK = 48_000, 512
 PICTURES_GOAL_MS = 34.0  # 30 pictures a second, less one in fifty
-BEAT_MS = 1
+BEAT_MS, SETTLED_MS = 1, 5000
 SIZE = 512
 
 
@@ -123,34 +120,32 @@ def playback_job(seconds: float = PLAYED_S) -> list[Speed]:
 
 
 def saving_job() -> list[Speed]:
-    """Change every frame of an hour at 60 fps, save it, and measure the longest the window did not answer."""
+    """Save an hour at 60 fps, then a copy of it, and measure the longest the window did not answer meanwhile."""
     from PySide6.QtCore import QEventLoop, QTimer
     from PySide6.QtWidgets import QApplication
-
-    from app.commands import EditCommand
 
     application = QApplication.instance() or QApplication(["retake"])
     with tempfile.TemporaryDirectory() as folder:
         window = _window(performance_of(3600.0, 60.0), Path(folder))
-        session, keeper = window.session, window.keeper
-        rows = np.random.default_rng(0).random((len(session.take), len(SHAPES)))
-        asked = np.zeros((len(rows), len(CONTROLS)))
-        patch = SimpleNamespace(start=0, stop=len(rows), weights=rows, asked=asked, reached=asked)
-        session.undo.push(EditCommand(session, patch, "everything"))  # type: ignore[arg-type]
-        application.processEvents()
-        beats, loop = [time.perf_counter()], QEventLoop()
+        loop = QEventLoop()
+        QTimer.singleShot(SETTLED_MS, loop.quit)  # what opening sets off is no part of saving
+        loop.exec()
+        beats: list[float] = []
         beat = QTimer(interval=BEAT_MS)
         beat.timeout.connect(lambda: beats.append(time.perf_counter()))
-        keeper.saved.connect(loop.quit)
-        keeper.failed.connect(loop.quit)
+        window.keeper.saved.connect(loop.quit)
+        window.keeper.failed.connect(loop.quit)
+        beats.append(time.perf_counter())
         beat.start()
-        keeper.save_as(Path(folder) / "hour.retake")
-        loop.exec()
+        for name in ("hour", "copy"):
+            window.keeper.save_as(Path(folder) / f"{name}.retake")
+            loop.exec()
+        beat.stop()
+        application.processEvents()
         window.close()
-    stall_ms = 1e3 * float(np.diff(beats).max())
     return [
-        Speed("save_60min_window_stall_ms_worst", stall_ms, "ms", 50.0),
-        Speed("save_60min_s", beats[-1] - beats[0], "s", 15.0),
+        Speed("save_60min_window_stall_ms_worst", 1e3 * float(np.diff(beats).max()), "ms", 50.0),
+        Speed("save_60min_twice_s", beats[-1] - beats[0], "s", 15.0),
     ]
 
 
