@@ -114,6 +114,7 @@ class FileActions(QObject):
         """Open what was recorded live, unless edits would be lost."""
         if self.may_lose_edits():
             self._session.open(take, None)
+            self._keeper.keep()
             self.opened.emit()
 
     def load_character(self) -> None:

@@ -99,7 +99,7 @@ class MainWindow(QMainWindow):
         self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
         self.smoothing = SmoothSection(self.session)
         self.spans = SpansSection(self.session, self.filling)
-        self.live = LiveSection(self.session)
+        self.live = LiveSection(self.session, self.keeper.folder)
         self.notes = NotesSection(self.session)
         sections = (
             self.brush,
@@ -275,7 +275,7 @@ class MainWindow(QMainWindow):
         self.media.close()
         self.reference.close_reader()
         self.filling.close()
-        self.live.stop()
+        self.live.shut_down()
         self.preview.close_renderer()
 
     # --- the window
