@@ -12,13 +12,14 @@ from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox
 
 from app.section import Section, quiet, slider
-from app.session import Session
+from app.session import Change, Session
 from engine.errors import EngineError
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
     from engine.live.record import Recorder
     from engine.live.spool import Spool
+    from engine.take import Take
 
 STATUS_MS = 400
 SWITCH_S = 1e-4  # for which a thread may keep another waiting; Python's own 5 ms would be felt in each packet
@@ -46,6 +47,8 @@ class LiveSection(Section):
         super().__init__(session, "Live")
         self._folder = folder
         self._spool: Spool | None = None
+        self._waiting: tuple[Take, Spool | None] | None = None  # a recording that is not open yet
+        session.changed.connect(self._on_change)
         self._listener: Listener | None = None
         self._recorder: Recorder | None = None
         self._shown_ms: deque[float] = deque(maxlen=SHOWN)
@@ -161,11 +164,17 @@ class LiveSection(Section):
             self._close_spool(remove=True)
             return
         self._save(all_rows=True)
+        self._waiting = (take, self._spool)
+        self._close_spool(remove=False)
         self.recorded.emit(take)
-        opened = self.session.take is take
-        if not opened and self._spool is not None:
-            self.failed.emit("The recording was not opened.", "It is offered when Retake starts again.")
-        self._close_spool(remove=opened)
+        if self._waiting is not None:
+            self.failed.emit("The recording waits until your edits are safe.", "Else it is offered at the next start.")
+
+    def _on_change(self, change: Change) -> None:
+        if self._waiting is not None and change & Change.TAKE and self.session.take is self._waiting[0]:
+            spool, self._waiting = self._waiting[1], None
+            if spool is not None:
+                spool.close(remove=True)
 
     def _close_spool(self, *, remove: bool) -> None:
         if self._spool is not None:

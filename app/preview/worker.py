@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from app.background import LatestWins
 from app.preview.renderer import Picture, Renderer, Shot
+from app.sides import Side
 from engine import character
 from engine.character import Character
 
@@ -20,6 +21,7 @@ class Wanted:
     since : when what it shows was done, or arrived; 0 where nobody waits
     live : whether it shows a live face
     strip : whether it is a strip of variants
+    sides : what it shows side by side, for what is drawn over it
     """
 
     shot: Shot
@@ -27,6 +29,7 @@ class Wanted:
     since: float = 0.0
     live: bool = False
     strip: bool = False
+    sides: tuple[Side, ...] = ()
 
 
 class RenderJob:
@@ -34,14 +37,13 @@ class RenderJob:
 
     def __init__(self) -> None:
         self._renderer: Renderer | None = None
-        self._character: Character | None = None
 
     def __call__(self, wanted: Wanted) -> Picture:
         """Return the picture of a shot."""
         shown = wanted.character or character.bundled()
-        if self._renderer is None or self._character is not shown:
-            self.close()
-            self._renderer, self._character = Renderer(shown), shown
+        if self._renderer is None:
+            self._renderer = Renderer(shown)
+        self._renderer.character = shown
         return self._renderer.draw(wanted.shot)
 
     def close(self) -> None:
