@@ -41,6 +41,7 @@ def test_a_stream_is_shown_recorded_and_opened(qtbot: QtBot, window: MainWindow)
     with qtbot.waitSignal(window.live.face, timeout=20_000) as shown:
         sender.start()
     assert np.asarray(shown.args[0]).shape == (52,)
+    assert window.preview._frame_label.text() == "live"
     sender.join(timeout=20)
     qtbot.waitUntil(lambda: window.live._recorder is not None and len(window.live._recorder) >= 45, timeout=10_000)
     QTest.mouseClick(window.live.record_button, LEFT)
@@ -48,6 +49,7 @@ def test_a_stream_is_shown_recorded_and_opened(qtbot: QtBot, window: MainWindow)
     np.testing.assert_allclose(window.session.take.weights, sent.weights, atol=1e-6)
     QTest.mouseClick(window.live.listen_button, LEFT)
     assert not window.live.listening
+    assert window.preview._frame_label.text() == "frame 0"
 
 
 def recording(qtbot: QtBot, window: MainWindow, sent: Take) -> None:
