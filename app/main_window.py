@@ -310,6 +310,10 @@ class MainWindow(QMainWindow):
 
     # --- the window
 
+    def quit(self) -> None:
+        """End the program; what is not saved is kept for the next start."""
+        self.close()
+
     def fill(self) -> None:
         """Fill the chosen span, or the selection."""
         self.spans.fill()
