@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from app.bench_playback import playback_job, saving_job
 from engine import speed
 from engine.speed import Speed, percentile_ms
 from engine.speed.drag import performance_of
@@ -28,7 +29,7 @@ def measure(report: Report) -> list[dict[str, Any]]:
     for method in speed.METHODS:
         report(f"measuring {method}")
         rows += speed.measure(method)
-    for job in ("render", "window"):
+    for job in ("render", "window", "playback", "saving"):
         report(f"measuring {job}")
         rows += _in_own_process(job)
     rows.append(_startup())
@@ -162,7 +163,13 @@ def startup_job() -> list[Speed]:
     return [Speed("startup_s", stamp[0], "s", 3.0)]
 
 
-JOBS: dict[str, Callable[[], list[Speed]]] = {"render": render_job, "window": window_job, "startup": startup_job}
+JOBS: dict[str, Callable[[], list[Speed]]] = {
+    "render": render_job,
+    "window": window_job,
+    "playback": playback_job,
+    "saving": saving_job,
+    "startup": startup_job,
+}
 
 if __name__ == "__main__":
     for row in JOBS[sys.argv[1]]():

@@ -6,7 +6,8 @@ import logging
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -68,6 +69,15 @@ class _Saving:
     path: Path
 
 
+@contextmanager
+def _as_unsaved_work(path: Path) -> Iterator[None]:
+    """Let an error speak of unsaved work: the name of its file says nothing to the user."""
+    try:
+        yield
+    except EngineError as error:
+        raise EngineError(error.sentence.replace(path.name, "unsaved work"), error.advice) from error
+
+
 class Keeper(QObject):
     """Commits each change of a session's undo stack and marks, and saves projects, on a thread of its own.
 
@@ -81,6 +91,7 @@ class Keeper(QObject):
     """
 
     failed = Signal(str, str)  # sentence, advice
+    mended = Signal(str)  # the sentence of a failure that is over
     kept = Signal(object)  # the Contents that are safe on disk
     saved = Signal(object)  # the path of a project that was just saved
     progress = Signal(float)  # the share of the save that is done, from the keeper's thread
@@ -93,6 +104,7 @@ class Keeper(QObject):
         self._newest = session.contents()  # what is to be written
         self._wished: _Saving | None = None
         self._stopped = False
+        self._waits: Contents | None = None  # steps that could not be kept while a copy was made
         self._afterwards: list[Callable[[], None]] = []
         self._opening = False
         self._told = ""
@@ -120,15 +132,15 @@ class Keeper(QObject):
         return self._kept.project if self._kept is not None else None
 
     def when_idle(self, then: Callable[[], None]) -> bool:
-        """Do something when nothing is being written any more; returns whether that is so already, and it is done.
+        """Do something when nothing is being written any more; returns whether nothing is.
 
         What waits is dropped where a save fails.
         """
+        self._afterwards.append(then)
         if not self._work.finish(PATIENCE_S):
-            self._afterwards.append(then)
             return False
         QCoreApplication.sendPostedEvents(self, QEvent.Type.MetaCall.value)  # what came of it is heard of first
-        then()
+        self._go_on()
         return True
 
     # --- saving and opening
@@ -138,6 +150,8 @@ class Keeper(QObject):
 
         Raises `EngineError`. One that cannot be written is opened all the same, as unsaved work.
         """
+        if self.path is not None and path.exists() and path.samefile(self.path):
+            self._detach(delete=False)  # a file is open once: what is in memory is in it
         self._adopt(Project.open(path), path, saved=True)
 
     def save_as(self, path: Path) -> None:
@@ -226,13 +240,18 @@ class Keeper(QObject):
             if isinstance(wanted, _Saving):
                 return self._save(wanted.path)
             if self._kept is None:
-                self._kept = _Kept(project.create(self._new_path(), wanted), saved=False)
+                path = self._new_path()
+                with _as_unsaved_work(path):
+                    self._kept = _Kept(project.create(path, wanted), saved=False)
             elif wanted is not self._kept.project.contents:  # a save may have brought them already
-                self._kept.project.put(wanted)
+                with nullcontext() if self._kept.saved else _as_unsaved_work(self._kept.project.path):
+                    self._kept.project.put(wanted)
             return self._kept.project
 
     def _written(self, wanted: Contents | _Saving, result: Project) -> None:
-        self._told = ""
+        if self._told:
+            self.mended.emit(self._told)
+            self._told = ""
         if isinstance(wanted, _Saving):
             self._arrived(wanted, result)
         else:
@@ -268,10 +287,10 @@ class Keeper(QObject):
         self.saving_changed.emit()
 
     def _go_on(self) -> None:
-        if self._afterwards and self._work.idle:
+        if self._work.idle:
             waiting, self._afterwards = self._afterwards, []
             for then in waiting:
-                self.when_idle(then)
+                then()
 
     def _adopt(self, opened: Project, path: Path | None, *, saved: bool) -> None:
         self._detach(delete=False)
@@ -332,11 +351,13 @@ class Keeper(QObject):
         """Put the steps made meanwhile in the file that is being copied, and so in the copy."""
         self._report(share)
         old, newest = self._project, self._newest
-        if old is not None and newest is not old.contents and newest.original is old.contents.original:
-            try:
-                old.put(newest)
-            except EngineError as error:
-                log.warning("a step waits for the save to end: %s", error)
+        if old is None or newest in (old.contents, self._waits) or newest.original is not old.contents.original:
+            return
+        try:
+            old.put(newest)
+        except EngineError as error:
+            self._waits = newest  # once is enough: each attempt lets the copy begin anew
+            log.warning("a step waits for the save to end: %s", error)
 
     def _new_path(self) -> Path:
         try:

@@ -213,6 +213,7 @@ class MainWindow(QMainWindow):
         self.edits.stop_else = self.retarget.retargeting.cancel
         self.files.character_chosen.connect(self.preview.show_character)
         self.keeper.saved.connect(self._show_saved)
+        self.keeper.mended.connect(self.notices.withdraw)
         self.timeline.visemes.wanted.connect(self._do)
         self.files.cues_dropped.connect(self.visemes.attach)
         self.files.told.connect(self.notices.tell)

@@ -15,6 +15,7 @@ from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
 from app.main_window import MainWindow
+from engine.project import Media
 from tests.journeys.conftest import no_dialog, settled, window
 
 HERE = Path(__file__).parent
@@ -44,7 +45,18 @@ def told_off(opened: MainWindow) -> None:
     opened.notices.tell("take.csv is not a Live Link Face file.", "Export it from the app as CSV.")
 
 
-STATES: tuple[Callable[[MainWindow], None], ...] = (first_minute, weights_shown, pinning_in_light, told_off)
+def sound_missing(opened: MainWindow) -> None:
+    record = Media("audio", "sound/slate.wav", "0" * 64, -0.25)
+    opened.session.set_marks(opened.session.marks.with_medium("audio", record))
+
+
+STATES: tuple[Callable[[MainWindow], None], ...] = (
+    first_minute,
+    weights_shown,
+    pinning_in_light,
+    told_off,
+    sound_missing,
+)
 
 
 def pixels(image: QImage) -> np.ndarray:
@@ -57,6 +69,8 @@ def pixels(image: QImage) -> np.ndarray:
 def test_a_state_looks_as_it_did(qtbot: QtBot, window: MainWindow, state: Callable[[MainWindow], None]) -> None:
     window.resize(*SIZE)
     state(window)
+    settled(qtbot, window)
+    qtbot.waitUntil(lambda: window.media.reading.idle, timeout=10_000)
     settled(qtbot, window)
     window.status["speed"].clear()
     image = window.grab().toImage()
