@@ -37,6 +37,7 @@ class EditActions(QObject):
         self._session, self._inference, self._curves, self._filling = session, inference, curves, filling
         self._copied: Array | None = None
         self.cutoff_hz: Callable[[], float] = lambda: 6.0
+        self.let_go: Callable[[], bool] = lambda: False  # of what is held on the timeline; whether there was any
 
     def undo(self) -> None:
         """Take back the last step."""
@@ -53,6 +54,8 @@ class EditActions(QObject):
     def cancel(self) -> None:
         """Drop the gesture, the fill or the preview under way; with none, clear the selection."""
         tool = self._curves.tool
+        if self.let_go():
+            return
         if tool.busy:
             tool.cancel()
         elif self._filling.variants or self._filling.busy:
