@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PySide6.QtGui import QUndoCommand
 
-from app.session import Session
+from app.session import MEDIA, Session
 from engine.controls import bundled_measurer
 from engine.project import (
     MARK,
@@ -76,13 +76,13 @@ class EditCommand(QUndoCommand):
         """Do it, first or again."""
         self._session.replace_rows(self._start, *self._after)
         if self._marks is not None:
-            self._session.set_marks(self._marks[1])
+            put_marks(self._session, self._marks[1], instead_of=self._marks[0])
 
     def undo(self) -> None:
         """Take it back."""
         self._session.replace_rows(self._start, *self._before)
         if self._marks is not None:
-            self._session.set_marks(self._marks[0])
+            put_marks(self._session, self._marks[0], instead_of=self._marks[1])
 
 
 class MarkCommand(QUndoCommand):
@@ -111,11 +111,22 @@ class MarkCommand(QUndoCommand):
 
     def redo(self) -> None:
         """Do it, first or again."""
-        self._session.set_marks(self._after)
+        put_marks(self._session, self._after, instead_of=self._before)
 
     def undo(self) -> None:
         """Take it back."""
-        self._session.set_marks(self._before)
+        put_marks(self._session, self._before, instead_of=self._after)
+
+
+def put_marks(session: Session, marks: Marks, *, instead_of: Marks) -> None:
+    """Put marks in place of those that a step found; sound and video that the step was not about stay as they are.
+
+    They are found beside a take a while after it was opened: undoing a step from before must not lose them.
+    """
+    for kind in MEDIA:
+        if marks.medium(kind) == instead_of.medium(kind):
+            marks = marks.with_medium(kind, session.marks.medium(kind))
+    session.set_marks(marks)
 
 
 class VisemesCommand(QUndoCommand):

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 FIRST_VIEW_S = 16.0
 BRUSH_S = 0.5
+MAX_OFFSET_S = 36_000.0  # of sound and video
+MEDIA = ("audio", "video")  # the kinds that may be attached
 
 
 class Change(Flag):
@@ -63,8 +65,10 @@ class Session(QObject):
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
     radius_frames, strength, exact : the Drag tool's brush
-    audio, audio_offset_s : the recording of the sound, and the time in the take at which it begins
-    video, video_offset_s : the file of the reference video, likewise
+    shows_removed : whether the Clean tool draws what it would remove
+    audio : the recording of the sound, None where there is none, or it is not found
+    video : the file of the reference video, likewise
+    sliding : the kind of what is being moved in time, and where it is by now; None between moves
     marks : spans, pins, notes, media and verdict
     visemes : what is said when, or None
     flags : what was found automatically, by the first frame; None while it is looked for
@@ -78,6 +82,7 @@ class Session(QObject):
         self.undo = QUndoStack(self)
         self.path: Path | None = None
         self.strength, self.exact, self.tool = 1.0, False, "drag"
+        self.shows_removed = True
         self._restoring = False
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
@@ -103,7 +108,7 @@ class Session(QObject):
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
         self.audio: Audio | None = None
         self.video: Path | None = None
-        self.audio_offset_s = self.video_offset_s = 0.0
+        self.sliding: tuple[str, float] | None = None
         self.undo.clear()
         self.changed.emit(Change.TAKE)
 
@@ -137,8 +142,9 @@ class Session(QObject):
     def set_marks(self, marks: Marks) -> None:
         """Put other spans, pins, notes, media or another verdict in place."""
         if marks != self.marks:
+            media = marks.media != self.marks.media
             self.marks = marks
-            self.changed.emit(Change.MARKS)
+            self.changed.emit(Change.MARKS | Change.MEDIA if media else Change.MARKS)
 
     def set_visemes(self, visemes: VisemeLane | None) -> None:
         """Put another visemes lane in place; for commands only."""
@@ -264,14 +270,27 @@ class Session(QObject):
             self.selection = frames
             self.changed.emit(Change.SELECTION)
 
-    def attach_audio(self, audio: Audio | None, offset_s: float = 0.0) -> None:
+    def attach_audio(self, audio: Audio | None) -> None:
         """Play a recording along with the take, or none."""
-        self.audio, self.audio_offset_s = audio, offset_s
+        self.audio = audio
         self.changed.emit(Change.MEDIA)
 
-    def attach_video(self, path: Path | None, offset_s: float = 0.0) -> None:
+    def attach_video(self, path: Path | None) -> None:
         """Show a reference video beside the face, or none."""
-        self.video, self.video_offset_s = path, offset_s
+        self.video = path
+        self.changed.emit(Change.MEDIA)
+
+    def offset_s(self, kind: str) -> float:
+        """Return the time in the take at which the sound (audio) or the video begins."""
+        if self.sliding is not None and self.sliding[0] == kind:
+            return self.sliding[1]
+        record = self.marks.medium(kind)
+        return 0.0 - record.offset_s if record is not None else 0.0
+
+    def slide(self, kind: str, offset_s: float | None) -> None:
+        """Show what another beginning of the sound or the video does; None goes back to what is kept."""
+        limit = MAX_OFFSET_S
+        self.sliding = (kind, float(np.clip(offset_s, -limit, limit))) if offset_s is not None else None
         self.changed.emit(Change.MEDIA)
 
     def choose_lane(self, lane: int) -> None:
@@ -294,6 +313,12 @@ class Session(QObject):
         """Let the mouse work with another tool."""
         if name != self.tool:
             self.tool = name
+            self.changed.emit(Change.TOOL)
+
+    def show_removed(self, *, shown: bool) -> None:
+        """Let the Clean tool draw what it would remove, or not."""
+        if shown != self.shows_removed:
+            self.shows_removed = shown
             self.changed.emit(Change.TOOL)
 
     def set_brush(

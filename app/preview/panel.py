@@ -139,6 +139,7 @@ class PreviewPanel(QFrame):
 
     strip_drawn = Signal(object)  # faces side by side, (height, width, 3)
     timed = Signal(float)  # ms from the mouse event to its picture on screen
+    live_timed = Signal(float)  # ms from a live packet's arrival to its picture on screen
     failed = Signal(str, str)
 
     def __init__(self, session: Session, inference: Inference) -> None:
@@ -230,14 +231,14 @@ class PreviewPanel(QFrame):
         size = (int(self.face.width() * ratio), int(self.face.height() * ratio))
         self._asked_at = time.perf_counter()
         shot = replace(self._shot(), size=size, smooth_edges=not self._coarse)
-        self.drawing.submit(Wanted(shot, self._character, since))
+        self.drawing.submit(Wanted(shot, self._character, since, live=self._live is not None))
         if self._coarse:
             self._still.start()
 
-    def show_live(self, weights: Array | None) -> None:
+    def show_live(self, weights: Array | None, arrived_s: float = 0.0) -> None:
         """Show a live face, (52,) weights, in place of the take's; None goes back to the take."""
         self._live = weights
-        self.refresh()
+        self.refresh(since=arrived_s)
 
     def draw_strip(self, faces: list[Array]) -> None:
         """Draw faces, (52,) weights each, small and side by side; `strip_drawn` brings the picture."""
@@ -274,7 +275,8 @@ class PreviewPanel(QFrame):
             self._quick_ms = spent
         self.face.show_picture(picture)
         if wanted.since:
-            self.timed.emit((time.perf_counter() - wanted.since) * 1e3)
+            timed = self.live_timed if wanted.live else self.timed
+            timed.emit((time.perf_counter() - wanted.since) * 1e3)
 
     def _refused(self, wanted: Wanted, sentence: str, advice: str) -> None:
         self._off = True

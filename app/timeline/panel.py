@@ -26,11 +26,14 @@ from engine.take import timecode
 
 RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 76
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
+SLACK_PX = 3  # a press that moves no farther is a click
+STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
 LAYOUT = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES  # what may bring lanes or take them away
 SHOWN = LAYOUT | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 HINTS = {
     "": "Drag to scrub. Shift-drag selects, the wheel zooms.",
+    "audio": "Drag to move the sound against the face.",
     "spans": "Drag to mark a span, click one to choose it.",
     "visemes": "Drag the ends of a block, double-click to select it, right-click to change it.",
     "flags": "What to look at: click a mark to go there, or Up and Down from one to the next.",
@@ -51,12 +54,15 @@ class Timeline(QWidget):
     """
 
     marked = Signal()  # the selection was drawn in the lane: it is to become a span
+    slid = Signal()  # the sound was dragged to where it is shown
 
     def __init__(self, session: Session, colours: Palette, *, gutter_px: int) -> None:
         super().__init__()
         self._session, self._colours, self._gutter = session, colours, gutter_px
         self._selecting: int | None = None
         self._marking = self._scrubbing = False
+        self._sliding: tuple[float, float] | None = None  # where the sound was taken hold of, and its beginning then
+        self.in_frames = False
         self._flags, self._spans = FlagLane(), SpanLane()
         self.visemes = VisemeEditing(session, self, self._viseme_place)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -67,6 +73,11 @@ class Timeline(QWidget):
     def paint_with(self, colours: Palette) -> None:
         """Take on a theme's colours."""
         self._colours = colours
+        self.update()
+
+    def count_in_frames(self, on: bool) -> None:
+        """Count in frames on the ruler, or in timecode."""
+        self.in_frames = on
         self.update()
 
     def sizeHint(self) -> QSize:
@@ -160,7 +171,8 @@ class Timeline(QWidget):
         fps = session.take.fps
         first, last = session.view
         per_second = self._span_px() / max(1e-9, (last - first) / fps)
-        step = next((s for s in STEPS_S if s * per_second >= LABEL_PX), STEPS_S[-1])
+        steps_s = [frames / fps for frames in STEPS_FRAMES] if self.in_frames else STEPS_S
+        step = next((s for s in steps_s if s * per_second >= LABEL_PX), steps_s[-1])
         index = int(first / fps / step)
         middle = Qt.AlignmentFlag.AlignCenter
         while index * step * fps <= last:
@@ -168,7 +180,8 @@ class Timeline(QWidget):
             x = self.x_of(time_s * fps)
             painter.setPen(QColor(self._colours.quiet))
             if x >= self._gutter + LABEL_PX / 2 - 6:  # the first would be cut in half
-                painter.drawText(QRectF(x - 50, 4, 100, 14), middle, timecode(time_s, fps))
+                shown = f"{round(time_s * fps):,}" if self.in_frames else timecode(time_s, fps)
+                painter.drawText(QRectF(x - 50, 4, 100, 14), middle, shown)
             painter.setPen(QColor(self._colours.edge))
             painter.drawLine(int(x), 20, int(x), RULER_PX)
             index += 1
@@ -176,7 +189,7 @@ class Timeline(QWidget):
     def _draw_audio(self, painter: QPainter) -> None:
         session = self._session
         if session.audio is not None:
-            first_s, last_s = (frame / session.take.fps - session.audio_offset_s for frame in session.view)
+            first_s, last_s = (frame / session.take.fps - session.offset_s("audio") for frame in session.view)
             box = QRectF(self._gutter, RULER_PX + 2, self._span_px(), AUDIO_PX - 4)
             draw_waveform(painter, session.audio, box, (first_s, last_s), self._colours.quiet)
 
@@ -195,6 +208,8 @@ class Timeline(QWidget):
             self._session.move_playhead(mark.flag.start)
         elif lane == "spans" or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             self._selecting, self._marking = frame, lane == "spans"
+        elif lane == "audio":
+            self._sliding = event.position().x(), self._session.offset_s("audio")
         elif lane != "visemes" or not self.visemes.take(x):
             self._scrubbing = True
             self._session.move_playhead(frame)
@@ -209,8 +224,17 @@ class Timeline(QWidget):
             self._session.select((first, last + 1))
         elif self._scrubbing:
             self._session.move_playhead(frame)
+        elif self._sliding is not None:
+            self._slide(event.position().x())
         else:
             self._show_pointer(event.position())
+
+    def _slide(self, x: float) -> None:
+        """Take the sound along with the mouse; back where it began it is left as it was."""
+        assert self._sliding is not None
+        began, offset_s = self._sliding
+        if self._session.sliding is not None or abs(x - began) > SLACK_PX:
+            self._session.slide("audio", offset_s + (self.frame_at(x) - self.frame_at(began)) / self._session.take.fps)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End the selection, or make it a span; a mere click clears it."""
@@ -218,6 +242,11 @@ class Timeline(QWidget):
             self.visemes.release()
         frame, selecting = round(self.frame_at(event.position().x())), self._selecting
         self._selecting, self._scrubbing = None, False
+        held, self._sliding = self._sliding, None
+        if held is not None and self._session.sliding is None:
+            self._session.move_playhead(frame)
+        elif held is not None:
+            self.slid.emit()
         if selecting is None:
             return
         if frame == selecting:
@@ -251,6 +280,8 @@ class Timeline(QWidget):
         lane = self._lane_at(place.y())
         if lane == "visemes" and self.visemes.edge_at(place.x()) is not None:
             self.setCursor(Qt.CursorShape.SplitHCursor)
+        elif lane == "audio":
+            self.setCursor(Qt.CursorShape.SizeHorCursor)
         elif lane == "flags" and self._flags.at(place.x()) is not None:
             self.setCursor(Qt.CursorShape.PointingHandCursor)
         else:

@@ -1,6 +1,6 @@
 """The `.retake` file: a performance, all that was done to it, and what people noted beside it, in one SQLite database."""
 
-from engine.project.media import Found, attach, find
+from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (
     MARK,
     VISEMES,
@@ -43,7 +43,9 @@ __all__ = [
     "find",
     "mark_edit",
     "marks_of",
+    "name_of",
     "peek",
+    "placed",
     "replay",
     "viseme_edit",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime
 from typing import Any
 
@@ -100,6 +100,15 @@ class Marks:
     notes: tuple[Note, ...] = ()
     media: tuple[Media, ...] = ()
     verdict: str = ""
+
+    def medium(self, kind: str) -> Media | None:
+        """Return the sound (audio) or the reference video (video), None where there is none."""
+        return next((media for media in self.media if media.kind == kind), None)
+
+    def with_medium(self, kind: str, media: Media | None) -> Marks:
+        """Return the same marks with another sound or video, or without."""
+        others = tuple(other for other in self.media if other.kind != kind)
+        return replace(self, media=(*others, media) if media is not None else others)
 
 
 def marks_of(stored: Mapping[str, Any]) -> Marks:

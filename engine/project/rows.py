@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from datetime import UTC, datetime
 from typing import Any
 
@@ -26,10 +26,15 @@ JSON_BYTES = 32  # that a character of JSON may grow to when it is read
 ROTATIONS = 9
 
 
-def write_contents(database: sqlite3.Connection, contents: Contents) -> None:
-    """Fill empty tables."""
+def write_contents(database: sqlite3.Connection, contents: Contents, report: Callable[[float], None]) -> None:
+    """Fill empty tables; `report` hears the share of the frames that are written."""
+    takes = [contents.original.weights, *(edit.weights for edit in contents.edits)]
+    written = np.cumsum([len(weights) for weights in takes])
+    report(0.0)
     _write_take(database, contents.original)
-    write_edits(database, 0, contents.edits)
+    for place, edit in enumerate(contents.edits):
+        report(written[place] / written[-1])
+        write_edits(database, place, (edit,))
     write_marks(database, contents.marks)
     write_state(database, contents)
 

@@ -11,7 +11,7 @@ from engine.character import Character
 from engine.errors import EditError
 from engine.spacetime import prior as priors
 from engine.spacetime.align import Warp
-from engine.spacetime.bounded import Bounds
+from engine.spacetime.bounded import Bounds, Tell, silent
 from engine.spacetime.closure import GAPS, Gaps, closedness
 from engine.spacetime.layout import Layout, standard
 from engine.spacetime.prior import Prior
@@ -134,15 +134,15 @@ def _jaw_and_close(pair: Correspondence) -> tuple[npt.NDArray[np.int64], npt.NDA
     return columns[0][:both], columns[1][:both]
 
 
-def match(pair: Correspondence, fps: float, matching: Matching) -> Array:
-    """Return weights, (frames, m), by movement matching."""
-    weights = without_jaw(pair, _match(with_jaw(pair), fps, matching))
+def match(pair: Correspondence, fps: float, matching: Matching, tell: Tell = silent) -> Array:
+    """Return weights, (frames, m), by movement matching; `tell` is told the share done, and may raise to stop."""
+    weights = without_jaw(pair, _match(with_jaw(pair), fps, matching, tell))
     if matching.bounds is not None:
         weights = np.clip(weights, matching.bounds.low, matching.bounds.high)  # the jaw, where both parts are large
     return weights
 
 
-def _match(pair: Correspondence, fps: float, matching: Matching) -> Array:
+def _match(pair: Correspondence, fps: float, matching: Matching, tell: Tell) -> Array:
     per_frame = (MODEL_FPS / fps) ** 2  # a velocity per frame is smaller at a higher rate; what holds places follows it
     prior, frames = pair.prior, len(pair.motion)
     beta = matching.beta * per_frame
@@ -155,11 +155,16 @@ def _match(pair: Correspondence, fps: float, matching: Matching) -> Array:
         weights = np.hstack([np.broadcast_to(weights, (frames, len(weights))), closed])
     alpha = matching.alpha * per_frame * prior.scale(pair.basis)
     system = System(pair.basis, frames, prior, alpha, Position(rows, weights), pair.believed)
-    return MovementMatcher(system, bounds=matching.bounds).solve(pair.motion, places=places)
+    return MovementMatcher(system, bounds=matching.bounds, tell=tell).solve(pair.motion, places=places)
 
 
 def retarget(
-    source: Source, character: Character, *, layout: Layout | None = None, matching: Matching | None = None
+    source: Source,
+    character: Character,
+    *,
+    layout: Layout | None = None,
+    matching: Matching | None = None,
+    tell: Tell = silent,
 ) -> Take:
     """Return the take that moves a character as the source moves.
 
@@ -169,11 +174,12 @@ def retarget(
     character : the target
     layout : which of its vertices carries which marker; None for the 54 standard ones
     matching : what is respected
+    tell : is told the share that is done, 0..1; it may raise, to stop
 
     What no marker tells of (gaze, tongue) is carried over by name; head rotation and lost frames are the source's.
     Raises `EditError` as `correspond` does.
     """
     pair = correspond(source, character, layout)
     weights = source.take.weights.copy()
-    weights[:, pair.shapes] = match(pair, source.take.fps, matching or Matching())
+    weights[:, pair.shapes] = match(pair, source.take.fps, matching or Matching(), tell)
     return replace(source.take, weights=weights, origin=None)

@@ -8,10 +8,12 @@ from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
 from app.edit_actions import EditActions
 from app.file_actions import FileActions
 from app.main_window import MainWindow
+from app.media_actions import MediaActions
+from app.settings_actions import SettingsActions
 from app.time_actions import TimeActions
 from app.viseme_actions import VisemeActions
 
-OWNERS = (MainWindow, FileActions, EditActions, TimeActions, VisemeActions)
+OWNERS = (MainWindow, FileActions, MediaActions, EditActions, TimeActions, VisemeActions, SettingsActions)
 
 
 @pytest.mark.parametrize("preset", list(PRESETS))

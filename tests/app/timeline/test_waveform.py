@@ -70,7 +70,8 @@ def test_the_lane_is_there_only_while_there_is_sound(timeline: Timeline) -> None
     session = timeline._session
     assert timeline.sizeHint().height() == RULER_PX + SPANS_PX + FLAGS_PX
     before = timeline.grab().toImage()
-    session.attach_audio(Audio(np.ones(RATE, np.float32) * 0.5, RATE), offset_s=5.0)
+    session.attach_audio(Audio(np.ones(RATE, np.float32) * 0.5, RATE))
+    session.slide("audio", 5.0)
     assert timeline.sizeHint().height() == RULER_PX + AUDIO_PX + SPANS_PX + FLAGS_PX
     image = timeline.grab().toImage()
     middle = RULER_PX + AUDIO_PX // 2
