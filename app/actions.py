@@ -41,7 +41,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("locate_media", "Locate missing sound or video…", "File", twin="commands play nothing"),
     Action("attach_visemes", "Attach visemes…", "File", twin="retake fill --visemes"),
     Action("load_character", "Show on another head…", "File", twin="retake render --character"),
-    Action("close", "Quit", "File", ("Ctrl+Q",), twin="ends the program"),
+    Action("quit", "Quit", "File", ("Ctrl+Q",), twin="ends the program"),
     Action("undo", "Undo", "Edit", ("Ctrl+Z",), "↶", twin="a command writes a new file; the old one stays"),
     Action("redo", "Redo", "Edit", ("Ctrl+Shift+Z", "Ctrl+Y"), "↷", twin="a command writes a new file"),
     Action("close_here", "Close here", "Edit", ("Shift+C",), twin="retake edit --set 0"),
@@ -64,8 +64,29 @@ ACTIONS: tuple[Action, ...] = (
     Action("accept", "Keep the fill", "Tools", ("Return", "Enter"), twin="retake fill --seed"),
     Action("clean_tool", "Clean", "Tools", ("C",), "Clean", True, twin="retake clean"),
     Action("live_tool", "Live", "Tools", ("Ctrl+Shift+L",), "Live", True, twin="retake live"),
+    Action("retarget_tool", "Retarget", "Tools", ("T",), "Retarget", True, twin="retake retarget"),
     Action("smooth", "Smooth", "Tools", ("Ctrl+B",), twin="retake smooth"),
     Action("show_removed", "Show what Clean removes", "View", ("Shift+R",), checkable=True, twin="retake clean --json"),
+    Action("open_markers", "Carry a capture's markers…", "Retarget", twin="retake retarget MARKERS"),
+    Action("choose_target", "Carry to a head…", "Retarget", twin="retake retarget --character"),
+    Action("choose_target_folder", "Carry to a folder of OBJ files…", "Retarget", twin="retake character import"),
+    Action("own_target", "Carry to Retake's own head", "Retarget", twin="retake retarget without --character"),
+    Action("carry", "Solve the whole take", "Retarget", ("Ctrl+Return",), twin="retake retarget"),
+    Action("stop_carrying", "Stop solving", "Retarget", twin="Ctrl+C"),
+    Action("keep_carried", "Keep what was solved", "Retarget", ("Ctrl+Shift+Return",), twin="retake retarget -o"),
+    Action("drop_carried", "Drop what was solved", "Retarget", twin="a command writes a new file"),
+    Action("suggest_labels", "Suggest frames to label", "Retarget", twin="helps to label in the window"),
+    Action("label_frame", "Label this frame", "Retarget", ("Ctrl+K",), twin="retake retarget --labels"),
+    Action("unlabel_frame", "Remove the label of this frame", "Retarget", twin="retake retarget --labels"),
+    Action(
+        "go_to_loosest", "Go to the least certain frame", "Retarget", ("Ctrl+J",), twin="helps to label in the window"
+    ),
+    Action("save_labels", "Save labels…", "Retarget", twin="retake retarget --labels"),
+    Action("read_labels", "Read labels…", "Retarget", twin="retake retarget --labels"),
+    Action("place_rest", "Place the other markers", "Retarget", twin="retake retarget --landmarks"),
+    Action("unplace_marker", "Remove the chosen marker", "Retarget", twin="retake retarget --landmarks"),
+    Action("save_places", "Save landmark file…", "Retarget", twin="retake retarget --landmarks"),
+    Action("read_places", "Read landmark file…", "Retarget", twin="retake retarget --landmarks"),
     Action("expand_lane", "Show or hide the weights below", "View", ("W",)),
     Action("play", "Play or pause", "Playback", ("Space",), "▶", True, twin="retake render -o OUT.mp4"),
     Action("play_backwards", "Play backwards", "Playback", ("J",)),
@@ -100,7 +121,7 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("open_take", "save", "export"),
     ("undo", "redo"),
     ("drag_tool", "draw_tool", "scale_tool", "pin_tool", "mark_tool"),
-    ("fill", "clean_tool", "live_tool"),
+    ("fill", "clean_tool", "live_tool", "retarget_tool"),
     ("play", "loop"),
 )
 # Keys of programs that hands already know; what a preset does not name keeps Retake's own.
@@ -141,4 +162,4 @@ def keys_of(entry: Action, preset: str) -> tuple[str, ...]:
     return PRESETS.get(preset, {}).get(entry.name, entry.keys)
 
 
-MENUS: tuple[str, ...] = ("File", "Edit", "Tools", "Playback", "View", "Help")
+MENUS: tuple[str, ...] = ("File", "Edit", "Tools", "Retarget", "Playback", "View", "Help")

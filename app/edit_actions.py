@@ -38,6 +38,7 @@ class EditActions(QObject):
         self._copied: Array | None = None
         self.cutoff_hz: Callable[[], float] = lambda: 6.0
         self.let_go: Callable[[], bool] = lambda: False  # of what is held on the timeline; whether there was any
+        self.stop_else: Callable[[], bool] = lambda: False  # stops other work under way; whether there was any
 
     def undo(self) -> None:
         """Take back the last step."""
@@ -54,15 +55,13 @@ class EditActions(QObject):
     def cancel(self) -> None:
         """Drop the gesture, the fill or the preview under way; with none, clear the selection."""
         tool = self._curves.tool
-        if self.let_go():
-            return
         if tool.busy:
             tool.cancel()
         elif self._filling.variants or self._filling.busy:
             self._filling.drop()
         elif self._inference.busy:
             self._inference.cancel()
-        else:
+        elif not (self.let_go() or self.stop_else()):
             self._session.select(None)
 
     def close_here(self) -> None:

@@ -43,6 +43,7 @@ from app.pins.section import PinsSection
 from app.playback.media import Media
 from app.preview.panel import PreviewPanel
 from app.preview.reference import ReferencePanel
+from app.retarget.actions import RetargetActions
 from app.session import MEDIA, Change, Session
 from app.settings import Settings
 from app.settings_actions import SettingsActions
@@ -103,12 +104,14 @@ class MainWindow(QMainWindow):
         self.live = LiveSection(self.session)
         self.attached = MediaSection(self.session)
         self.notes = NotesSection(self.session)
+        self.retarget = RetargetActions(self.session, self)
         sections = (
             self.brush,
             self.value,
             self.pins,
             self.clean,
             self.live,
+            *self.retarget.sections,
             self.smoothing,
             self.spans,
             FactsSection(self.session),
@@ -132,7 +135,7 @@ class MainWindow(QMainWindow):
     # --- building
 
     def _do(self, name: str) -> None:
-        owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.preferences)
+        owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.retarget, self.preferences)
         owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
 
@@ -182,18 +185,11 @@ class MainWindow(QMainWindow):
     def _connect(self) -> None:
         self.session.changed.connect(self._on_change)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        shown = (self.preview, self.media, self.reference, self.live)
+        shown = (self.preview, self.media, self.reference, self.live, self.retarget)
         for part in (*shown, self.inference, self.filling, self.keeper, self.visemes, self.timeline.visemes):
             part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self.status.timed)
-        self.media.missing_changed.connect(self._show_missing)
-        self.missing.locate.connect(self.sound.locate)
-        self.missing.accept.connect(self.sound.accept)
-        self.missing.detach.connect(self.media.detach)
-        self.attached.detached.connect(self.media.detach)
-        self.reference.detached.connect(self.sound.detach_video)
-        self.attached.moved.connect(self.media.move)
-        self.timeline.slid.connect(self.media.settle)
+        self._connect_media()
         self.notes.author = lambda: self.settings.author
         self.preferences.themed.connect(self._wear)
         for clock in (self.timeline, self.status):
@@ -211,6 +207,11 @@ class MainWindow(QMainWindow):
         self.live.face.connect(self.preview.show_live)
         self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
+        self.retarget.shown.connect(self.preview.show_sides)
+        self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
+        self.preview.picked.connect(self.retarget.pick)
+        self.preview.dot_clicked.connect(self.retarget.retargeting.choose)
+        self.edits.stop_else = self.retarget.retargeting.cancel
         self.files.character_chosen.connect(self.preview.show_character)
         self.keeper.saved.connect(self._show_saved)
         self.timeline.visemes.wanted.connect(self._do)
@@ -229,6 +230,16 @@ class MainWindow(QMainWindow):
         application = QApplication.instance()
         if application is not None:
             application.installEventFilter(self)
+
+    def _connect_media(self) -> None:
+        self.media.missing_changed.connect(self._show_missing)
+        self.missing.locate.connect(self.sound.locate)
+        self.missing.accept.connect(self.sound.use_found)
+        self.missing.detach.connect(self.media.detach)
+        self.attached.detached.connect(self.media.detach)
+        self.reference.detached.connect(self.sound.detach_video)
+        self.attached.moved.connect(self.media.move)
+        self.timeline.slid.connect(self.media.settle)
 
     def showEvent(self, event: QShowEvent) -> None:
         """Load the networks once the window can be seen."""
@@ -294,10 +305,15 @@ class MainWindow(QMainWindow):
         self.flagging.close()
         self.visemes.close()
         self.live.stop()
+        self.retarget.retargeting.close()
         self.preview.close_renderer()
         self.preferences.close()
 
     # --- the window
+
+    def quit(self) -> None:
+        """End the program; what is not saved is kept for the next start."""
+        self.close()
 
     def fill(self) -> None:
         """Fill the chosen span, or the selection."""

@@ -58,7 +58,7 @@ class MediaActions(QObject):
         if record is not None and (path := self._chosen(kind, f"Where is {project.name_of(record)}?")):
             self._media.locate(kind, path)
 
-    def accept(self, kind: str) -> None:
+    def use_found(self, kind: str) -> None:
         """Use the file that has the name but not the content of the one that was attached."""
         found = self._media.missing.get(kind)
         if found is not None and found.changed is not None:

@@ -13,6 +13,7 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from engine import quality
+from engine.character import Character
 from engine.controls import CONTROLS, bundled_measurer
 from engine.formats.audio import Audio
 from engine.project import Contents, Marks, Replayed, Span
@@ -45,6 +46,7 @@ class Change(Flag):
     MARKS = auto()  # spans, pins, notes, media or the verdict
     VISEMES = auto()  # what is said when
     FLAGS = auto()  # what was found automatically
+    CHARACTER = auto()  # whose head the weights are for
 
 
 class Session(QObject):
@@ -73,6 +75,7 @@ class Session(QObject):
     visemes : what is said when, or None
     flags : what was found automatically, by the first frame; None while it is looked for
     touched : the half-open range of frames that changed last
+    character : whose head the weights are for; None for the bundled one
     """
 
     changed = Signal(object)
@@ -84,6 +87,7 @@ class Session(QObject):
         self.strength, self.exact, self.tool = 1.0, False, "drag"
         self.shows_removed = True
         self._restoring = False
+        self.character: Character | None = None
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
 
@@ -106,11 +110,12 @@ class Session(QObject):
         self.radius_frames = max(2, round(BRUSH_S * take.fps))
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
+        other_head, self.character = self.character is not None, None
         self.audio: Audio | None = None
         self.video: Path | None = None
         self.sliding: tuple[str, float] | None = None
         self.undo.clear()
-        self.changed.emit(Change.TAKE)
+        self.changed.emit(Change.TAKE | Change.CHARACTER if other_head else Change.TAKE)
 
     def restore(self, contents: Contents, path: Path | None, steps: Iterable[QUndoCommand], state: Replayed) -> None:
         """Replace everything by what a project holds: its edits as `steps`, which come to `state`."""
@@ -156,6 +161,11 @@ class Session(QObject):
         """Show what was found automatically."""
         self.flags = flags
         self.changed.emit(Change.FLAGS)
+
+    def play_on(self, character: Character | None) -> None:
+        """Say whose head the weights are for; None is the bundled one."""
+        self.character = character
+        self.changed.emit(Change.CHARACTER)
 
     def _on_clean_changed(self, _: bool) -> None:
         self.changed.emit(Change.SAVED)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from app.background import LatestWins
 from app.preview.renderer import Picture, Renderer, Shot
+from app.sides import Side
 from engine import character
 from engine.character import Character
 
@@ -20,6 +21,7 @@ class Wanted:
     since : when what it shows was done, or arrived; 0 where nobody waits
     live : whether it shows a live face
     strip : whether it is a strip of variants
+    sides : what it shows side by side, for what is drawn over it
     """
 
     shot: Shot
@@ -27,6 +29,7 @@ class Wanted:
     since: float = 0.0
     live: bool = False
     strip: bool = False
+    sides: tuple[Side, ...] = ()
 
 
 class RenderJob:

@@ -138,6 +138,17 @@ def test_a_typed_value_is_reached(qtbot: QtBot, window: MainWindow) -> None:
     assert CURVES[LIPS].title in window.session.undo.undoText()
 
 
+def reopened(qtbot: QtBot, window: MainWindow, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Save the project, open something else, and open it again."""
+    session = window.session
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
+    QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    qtbot.waitUntil(lambda: not session.edited, timeout=10_000)
+    for opened in (demo.BUNDLED, path):
+        window.load(opened)
+        qtbot.waitUntil(lambda opened=opened: session.path == opened, timeout=10_000)
+
+
 def test_a_morning_of_editing_is_kept_step_by_step(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -193,11 +204,9 @@ def test_a_morning_of_editing_is_kept_step_by_step(
     gesture(qtbot, window, at(window, JAW, 150, value), at(window, JAW, 150, value + 0.2))
     done("drag jawOpen")
 
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path / "morning.retake"), ""))
-    QTest.keyClick(window, Qt.Key.Key_S, control)
     settled(qtbot, window)
     assert looks_as_it_did(window, "journey_power_user", tmp_path)
-    assert window.load(demo.BUNDLED) and window.load(tmp_path / "morning.retake")
+    reopened(qtbot, window, tmp_path / "morning.retake", monkeypatch)
     for weights in reversed(states):
         np.testing.assert_array_equal(session.take.weights, weights)
         QTest.keyClick(window, Qt.Key.Key_Z, control)

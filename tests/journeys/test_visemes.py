@@ -65,8 +65,11 @@ def test_dropped_corrected_saved_and_taken_back(
 
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path / "a.retake"), ""))
     QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
-    assert window.load(demo.BUNDLED) and session.visemes is None
-    assert window.load(tmp_path / "a.retake")
+    qtbot.waitUntil(lambda: not session.edited, timeout=10_000)
+    window.load(demo.BUNDLED)
+    qtbot.waitUntil(lambda: session.visemes is None, timeout=10_000)
+    window.load(tmp_path / "a.retake")
+    qtbot.waitUntil(lambda: session.visemes is not None, timeout=10_000)
     assert (session.visemes.cues, session.visemes.originals) == (said.cues, said.originals)
     window.actions_by_name["restore_visemes"].trigger()
     assert session.visemes.cues == said.originals
