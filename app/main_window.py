@@ -201,6 +201,7 @@ class MainWindow(QMainWindow):
         self.smoothing.kept.connect(self.edits.smooth)
         self.smoothing.dropped.connect(self.inference.cancel)
         self.edits.cutoff_hz = self.smoothing.cutoff.value
+        self.edits.let_go = self.timeline.visemes.drop
         self.edits.told.connect(self.status["notice"].setText)
         self.time.looping = self.actions_by_name["loop"].isChecked
         self.live.face.connect(self.preview.show_live)
