@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
+from app.retarget.labelling import Labelling
 from app.retarget.retargeting import Retargeting
 from app.section import quiet
 from app.session import Session
@@ -20,7 +21,7 @@ class LabelsBox(QWidget):
     Parameters
     ----------
     session : whose playhead it is
-    retargeting : keeps the labels
+    retargeting, labelling : keep the labels, and change them
 
     Attributes
     ----------
@@ -28,9 +29,9 @@ class LabelsBox(QWidget):
     frames : the listed frames' buttons, by frame
     """
 
-    def __init__(self, session: Session, retargeting: Retargeting) -> None:
+    def __init__(self, session: Session, retargeting: Retargeting, labelling: Labelling) -> None:
         super().__init__()
-        self._session, self._retargeting = session, retargeting
+        self._session, self._retargeting, self._labelling = session, retargeting, labelling
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(6)
@@ -44,7 +45,7 @@ class LabelsBox(QWidget):
         self._hint = quiet("")
         column.addWidget(self._hint)
         self.weights = WeightSliders()
-        self.weights.moved.connect(retargeting.pose)
+        self.weights.moved.connect(labelling.pose)
         self.weights.searched.connect(self.show_pose)
         column.addWidget(self.weights)
         column.addWidget(self.label_button)
@@ -54,7 +55,7 @@ class LabelsBox(QWidget):
     def show_all(self) -> None:
         """Show the labels and the pose at the playhead."""
         self._show_list()
-        loosest = self._retargeting.loosest
+        loosest = self._labelling.loosest
         self.loosest_button.setVisible(loosest is not None)
         if loosest is not None:
             self.loosest_button.setText(f"Least certain: frame {loosest}")

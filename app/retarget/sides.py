@@ -19,12 +19,15 @@ from engine.take import Array
 MARGIN = 0.25  # of a capture's extent, around it
 
 
-def sides(session: Session, retargeting: Retargeting, *, dots: bool) -> tuple[Side, ...]:
-    """Return what stands side by side now; nothing where the take itself is to be seen."""
+def sides(session: Session, retargeting: Retargeting, chosen: str, *, dots: bool) -> tuple[Side, ...]:
+    """Return what stands side by side now; nothing where the take itself is to be seen.
+
+    `chosen` is the marker that a click on the target places; `dots` are drawn on heads where they are asked for.
+    """
     target, head = retargeting.target, retargeting.target.head
     if session.tool != "retarget" or (head is not None and not retargeting.ready):
         return ()
-    frame, chosen = session.playhead, retargeting.chosen
+    frame = session.playhead
     capture = retargeting.capture
     if capture is not None:
         left = _of_capture(capture, frame, chosen if dots else "")
