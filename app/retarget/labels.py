@@ -77,19 +77,25 @@ class LabelsBox(QWidget):
         self.weights.show_face(face, np.ptp(around, axis=0) + face, retargeting.draft_pose)
 
     def _show_list(self) -> None:
+        labelled, fps = self._retargeting.target.labels, self._session.take.fps
+        waiting = [frame for frame in self._retargeting.suggestions if frame not in labelled]
+        listed = sorted([*labelled, *waiting])
+        if listed[:SHOWN] != list(self.frames):
+            self._lay_out_list(listed)
+        for frame, button in self.frames.items():
+            state = "labelled" if frame in labelled else "to label"
+            button.setText(f"{timecode(frame / fps, fps)}  frame {frame} · {state}")
+
+    def _lay_out_list(self, frames: list[int]) -> None:
         while (item := self._list.takeAt(0)) is not None:
             if (old := item.widget()) is not None:
                 old.hide()
                 old.deleteLater()
         self.frames = {}
-        labelled, fps = self._retargeting.target.labels, self._session.take.fps
-        waiting = [frame for frame in self._retargeting.suggestions if frame not in labelled]
-        for frame in sorted([*labelled, *waiting])[:SHOWN]:
-            state = "labelled" if frame in labelled else "to label"
-            button = QPushButton(f"{timecode(frame / fps, fps)}  frame {frame} · {state}")
+        for frame in frames[:SHOWN]:
+            button = self.frames[frame] = QPushButton()
             button.setToolTip("Go to this frame")
             button.clicked.connect(lambda _=False, frame=frame: self._session.move_playhead(frame))
             self._list.addWidget(button)
-            self.frames[frame] = button
-        if len(labelled) + len(waiting) > SHOWN:
-            self._list.addWidget(quiet(f"and {len(labelled) + len(waiting) - SHOWN} more"))
+        if len(frames) > SHOWN:
+            self._list.addWidget(quiet(f"and {len(frames) - SHOWN} more"))
