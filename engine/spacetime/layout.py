@@ -148,7 +148,8 @@ def _with_jaw(place: Place, character: Character, skin: npt.NDArray[np.int64]) -
     way = np.linalg.norm(character.deltas[SHAPE_INDEX["jawOpen"]], axis=1)
     ends = way[[character.landmarks[place.start], character.landmarks[place.end]]]
     slack = JAW_SLACK * way.max()
-    return skin[(way[skin] >= ends.min() - slack) & (way[skin] <= ends.max() + slack)]
+    follows = (way[skin] >= ends.min() - slack) & (way[skin] <= ends.max() + slack)
+    return np.asarray(skin[follows], np.int64)
 
 
 def _in_front(wanted: Array, points: Array, skin: npt.NDArray[np.int64], unit: float) -> int:
