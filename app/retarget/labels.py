@@ -27,6 +27,7 @@ class LabelsBox(QWidget):
     ----------
     suggest_button, label_button, unlabel_button, loosest_button : for the window's actions
     frames : the listed frames' buttons, by frame
+    weights : the target's pose at the playhead
     """
 
     def __init__(self, session: Session, retargeting: Retargeting, labelling: Labelling) -> None:
@@ -44,12 +45,11 @@ class LabelsBox(QWidget):
         column.addWidget(self.loosest_button)
         self._hint = quiet("")
         column.addWidget(self._hint)
-        self.weights = WeightSliders()
-        self.weights.moved.connect(labelling.pose)
-        self.weights.searched.connect(self.show_pose)
-        column.addWidget(self.weights)
         column.addWidget(self.label_button)
         column.addWidget(self.unlabel_button)
+        self.weights = WeightSliders()  # the section puts it last: it is long
+        self.weights.moved.connect(labelling.pose)
+        self.weights.searched.connect(self.show_pose)
         self.frames: dict[int, QPushButton] = {}
 
     def show_all(self) -> None:
@@ -58,8 +58,10 @@ class LabelsBox(QWidget):
         loosest = self._labelling.loosest
         self.loosest_button.setVisible(loosest is not None)
         if loosest is not None:
-            self.loosest_button.setText(f"Least certain: frame {loosest}")
-            self.loosest_button.setToolTip("The frame that the labels tell least of: label it next")
+            self.loosest_button.setText(f"Worst, as estimated: frame {loosest}")
+            self.loosest_button.setToolTip(
+                "Where the labels tell least, and the solve is likely furthest off: label it next"
+            )
         self.show_pose()
 
     def show_pose(self) -> None:

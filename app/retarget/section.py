@@ -67,6 +67,7 @@ class RetargetSection(Section):
         self.labels = LabelsBox(session, retargeting, labelling)
         self.column.addWidget(self.labels)
         self._lay_out_solve()
+        self.column.addWidget(self.labels.weights)
         retargeting.changed.connect(self.show_all)
         retargeting.drawn.connect(self._show_pose)
         retargeting.progress.connect(self._show_share)
@@ -102,7 +103,7 @@ class RetargetSection(Section):
         with QSignalBlocker(self.rest_frame):
             self.rest_frame.setMaximum(max(0, len(self.session.take) - 1))
         self.strengths.setVisible(state.ready and not labels)
-        for part in (self.labels, self.save_button, self.read_button):
+        for part in (self.labels, self.labels.weights, self.save_button, self.read_button):
             part.setVisible(state.ready and labels)
         self.method.setVisible(state.ready)
         solving = state.share is not None

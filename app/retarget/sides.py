@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from app.retarget.carry import Target
-from app.retarget.retargeting import Retargeting
+from app.retarget.retargeting import LABELS, Retargeting
 from app.session import Session
 from app.sides import Dot, Side
 from engine.character import Character, bundled
@@ -35,7 +35,8 @@ def sides(session: Session, retargeting: Retargeting, chosen: str, *, dots: bool
         left = _of_take(session, retargeting.performance.head, chosen, dots=dots)
     if head is None:
         return left, Side("no head chosen yet", None, box=_box(bundled().neutral.astype(np.float64)))
-    state = "solved" if retargeting.result is not None else "live"
+    by_name = retargeting.method == LABELS and capture is None
+    state = "solved" if retargeting.result is not None else "weights by name" if by_name else "live"
     on_target = _on_head(target, retargeting.names, chosen) if dots else ()
     right = Side(f"{head.name} · {state}", retargeting.face_at(frame), head, on_target, pickable=dots and bool(chosen))
     return left, right

@@ -132,3 +132,14 @@ def test_a_solve_from_labels_tells_its_share_and_stops_when_asked(random_take: T
 
     with pytest.raises(Enough):
         from_labels(random_take, {3: random_take.weights[3]}, tell=tell)
+
+
+def test_frames_that_are_loosely_held_are_those_that_come_out_wrong() -> None:
+    weights = read_take(demo.BUNDLED).weights[:250]
+    rng = np.random.default_rng(1)
+    gain = 1 + 0.8 * np.tanh((weights - weights.mean(axis=0)) @ rng.normal(0, 0.5, (52, 52)))
+    truth = np.clip(weights * gain @ (np.eye(52) + rng.normal(0, 0.08, (52, 52))), 0, 1)
+    made = from_labels(Take(weights, 30.0), {frame: truth[frame] for frame in suggest_frames(weights, 4)})
+    error = np.sqrt(((made.take.weights - truth) ** 2).mean(axis=1))
+    assert np.corrcoef(np.argsort(np.argsort(made.uncertainty)), np.argsort(np.argsort(error)))[0, 1] > 0.8
+    assert (error < error[np.argmax(made.uncertainty)]).mean() > 0.9
