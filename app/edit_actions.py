@@ -157,6 +157,10 @@ class EditActions(QObject):
         """Work with a phone's stream."""
         self._session.choose_tool("live")
 
+    def show_removed(self) -> None:
+        """Draw what the Clean tool would remove, or not."""
+        self._session.show_removed(shown=not self._session.shows_removed)
+
     def clean_tool(self) -> None:
         """Work with the Clean tool."""
         self._session.choose_tool("clean")

@@ -59,6 +59,16 @@ LIGHT = Palette(
 )
 
 
+def palette(name: str) -> Palette:
+    """Return a theme by name: dark, light, or as the system has it."""
+    if name == "system":
+        from PySide6.QtCore import Qt
+        from PySide6.QtGui import QGuiApplication
+
+        name = "light" if QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Light else "dark"
+    return LIGHT if name == "light" else DARK
+
+
 def style_sheet(colours: Palette) -> str:
     """Return the Qt style sheet of a theme."""
     c = colours

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from collections import deque
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,8 +18,9 @@ if TYPE_CHECKING:
     from engine.live.listen import Listener
     from engine.live.record import Recorder
 
-POLL_MS = 16
-STATUS_EVERY = 20  # polls
+STATUS_MS = 320
+SWITCH_S = 1e-4  # for which a thread may keep another waiting; Python's own 5 ms would be felt in each packet
+SHOWN = 300  # pictures whose delay the meter tells
 # Heard from other machines only when asked for: a face is personal, and a socket is a door.
 PLACES = {"this computer only": "127.0.0.1", "my network (a phone)": "0.0.0.0"}
 
@@ -31,17 +34,20 @@ class LiveSection(Section):
     """
 
     tools = frozenset({"live"})
-    face = Signal(object)  # (52,) weights to show, or None to go back to the take
+    face = Signal(object, float)  # (52,) weights to show and when they arrived, or None to go back to the take
     recorded = Signal(object)  # a Take
     failed = Signal(str, str)
+    _cleaned = Signal()  # from the listener's thread
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "Live")
         self._listener: Listener | None = None
         self._recorder: Recorder | None = None
-        self._polls = 0
-        self._timer = QTimer(self, interval=POLL_MS)
-        self._timer.timeout.connect(self._poll)
+        self._shown_ms: deque[float] = deque(maxlen=SHOWN)
+        self._timer = QTimer(self, interval=STATUS_MS)
+        self._timer.timeout.connect(self._show_status)
+        self._cleaned.connect(self._show_face)
+        self._switch_s = sys.getswitchinterval()
         self.place, self.port = QComboBox(), QSpinBox()
         self.place.addItems(list(PLACES))
         self.place.setAccessibleName("Listen to")
@@ -82,12 +88,19 @@ class LiveSection(Section):
 
         try:
             stream = Stream(strength=self.strength.value() / 100)
-            self._listener = Listener(stream, bind=PLACES[self.place.currentText()], port=self.port.value())
+            self._listener = Listener(
+                stream,
+                bind=PLACES[self.place.currentText()],
+                port=self.port.value(),
+                on_frames=self._cleaned.emit,
+            )
         except EngineError as error:
             self.failed.emit(error.sentence, error.advice)
             return
         self.subjects.clear()
+        self._shown_ms.clear()
         self._timer.start()
+        sys.setswitchinterval(SWITCH_S)
         self._show_buttons()
 
     def stop(self) -> None:
@@ -98,7 +111,8 @@ class LiveSection(Section):
         if self._listener is not None:
             self._listener.close()
             self._listener = None
-            self.face.emit(None)
+            sys.setswitchinterval(self._switch_s)
+            self.face.emit(None, 0.0)
         self._show_buttons()
 
     def toggle_recording(self) -> None:
@@ -119,18 +133,18 @@ class LiveSection(Section):
                 self.failed.emit(error.sentence, error.advice)
         self._show_buttons()
 
-    def _poll(self) -> None:
-        if self._listener is None:
-            return
-        frames = self._listener.frames()
+    def on_screen(self, spent_ms: float) -> None:
+        """Take note of how long a packet took until its picture was shown."""
+        self._shown_ms.append(spent_ms)
+
+    def _show_face(self) -> None:
+        frames = self._listener.frames() if self._listener is not None else []
         if frames:
-            self.face.emit(np.asarray(frames[-1].clean, np.float64))
-        self._polls += 1
-        if self._polls % STATUS_EVERY == 0:
-            self._show_status()
+            self.face.emit(np.asarray(frames[-1].clean, np.float64), frames[-1].arrived_s)
 
     def _show_status(self) -> None:
-        assert self._listener is not None
+        if self._listener is None:
+            return
         status = self._listener.status()
         if self.subjects.count() != len(status.subjects):
             self.subjects.clear()
@@ -138,6 +152,8 @@ class LiveSection(Section):
         lines = [f"{status.frames:,} frames"]
         if np.isfinite(status.latency_p95_ms):
             lines.append(f"clean {status.latency_p95_ms:.1f} ms after arrival")
+        if self._shown_ms:
+            lines.append(f"on screen {np.percentile(self._shown_ms, 95):.0f} ms after arrival")
         lines += [f"{count:,} {reason}" for reason, count in status.drops.items() if count]
         if self._recorder is not None:
             lines.append(f"recording: {len(self._recorder):,} frames")

@@ -153,6 +153,7 @@ class PreviewPanel(QFrame):
 
     strip_drawn = Signal(object)  # faces side by side, (height, width, 3)
     timed = Signal(float)  # ms from the mouse event to its picture on screen
+    live_timed = Signal(float)  # ms from a live packet's arrival to its picture on screen
     failed = Signal(str, str)
     picked = Signal(int, int)  # which side was clicked, and the vertex there
     dot_clicked = Signal(str)  # name of a marker
@@ -249,14 +250,15 @@ class PreviewPanel(QFrame):
         size = (int(self.face.width() * ratio), int(self.face.height() * ratio))
         self._asked_at = time.perf_counter()
         shot = replace(self._shot(), size=size, smooth_edges=not self._coarse)
-        self.drawing.submit(Wanted(shot, self._character, since, sides=self._sides))
+        live = self._live is not None
+        self.drawing.submit(Wanted(shot, self._character, since, live=live, sides=self._sides))
         if self._coarse:
             self._still.start()
 
-    def show_live(self, weights: Array | None) -> None:
+    def show_live(self, weights: Array | None, arrived_s: float = 0.0) -> None:
         """Show a live face, (52,) weights, in place of the take's; None goes back to the take."""
         self._live = weights
-        self.refresh()
+        self.refresh(since=arrived_s)
 
     def show_sides(self, sides: tuple[Side, ...]) -> None:
         """Show these side by side in place of the take; none goes back to it."""
@@ -314,7 +316,8 @@ class PreviewPanel(QFrame):
         size = self.face.width(), self.face.height()
         self.face.show_picture(picture, Overlay.of(wanted.sides, wanted.shot.camera, *size) if wanted.sides else None)
         if wanted.since:
-            self.timed.emit((time.perf_counter() - wanted.since) * 1e3)
+            timed = self.live_timed if wanted.live else self.timed
+            timed.emit((time.perf_counter() - wanted.since) * 1e3)
 
     def _pick(self, at: QPointF) -> None:
         """Name the dot under the pointer, or else the vertex."""

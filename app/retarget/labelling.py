@@ -13,7 +13,7 @@ from app.retarget.retargeting import Retargeting
 from app.session import Session
 from engine.errors import EditError
 from engine.formats import labels as files
-from engine.formats.labels import Labels
+from engine.formats.labels import LabelFile
 from engine.take import SHAPES
 
 
@@ -73,15 +73,15 @@ class Labelling:
     def read(self, path: Path) -> None:
         """Read labels; raises `EngineError`."""
         stored, frames = files.read(path), len(self._session.take)
-        outside = [frame for frame in stored.poses if frame >= frames]
+        outside = [frame for frame in stored.labels if frame >= frames]
         if outside:
             raise EditError(f"{path.name} labels frame {outside[0]}; the take has {frames} frames.")
-        self._change(stored.poses, f"read {path.name}")
+        self._change(stored.labels, f"read {path.name}")
 
     def write(self, path: Path) -> None:
         """Write labels; raises `EngineError`."""
         target = self._retargeting.target
-        files.write(Labels(str(target.path or ""), target.labels), path)
+        files.write(LabelFile(target.labels, target.path), path)
 
     def _change(self, labels: Mapping[int, Pose], title: str) -> None:
         state = self._retargeting

@@ -19,6 +19,8 @@ Floats = npt.NDArray[np.float32]
 _SHAPES = len(SHAPES)
 BELIEVABLE = (-1.0, 2.0)  # a weight beyond these is a fault of the tracker or of the network, not a face
 FROZEN_S = 1.0  # a frame that comes again for longer than this is a tracker that stands, not a face that rests
+LEAD_S = 0.008  # how far ahead a moving shape is shown: the network's estimate trails the face by about as much
+SLOW_PER_S = 0.5  # what is slower than this is not shown ahead: at rest it would be jitter
 STEP_S = (1e-3, 0.5)  # a longer gap is taken for this long: no face extrapolates further
 
 
@@ -32,6 +34,7 @@ class CleanState:
     velocity : (52,) float32, its derivative per second
     hidden, cell : (layers, hidden) float32 of the recurrent layers
     landing : the way back after a lost run
+    pace : (52,) float32, velocity without the leap that ends a lost run
     seen : (52,) float32, the last frame with a face
     frozen_s : for how long the tracker has sent that very frame, seconds
     """
@@ -41,13 +44,15 @@ class CleanState:
     hidden: Floats
     cell: Floats
     landing: Landing
+    pace: Floats
     seen: Floats
     frozen_s: float = 0.0
 
     @property
     def shown(self) -> Floats:
-        """(52,) float32, 0..1: the estimate, or the way back to it after a lost run."""
-        shown: Floats = np.clip(self.weights + self.landing.offset, 0.0, 1.0)
+        """(52,) float32, 0..1: the estimate a moment ahead, or the way back to it after a lost run."""
+        ahead = LEAD_S * (self.pace - np.clip(self.pace, -SLOW_PER_S, SLOW_PER_S))
+        shown: Floats = np.clip(self.weights + self.landing.offset + ahead, 0.0, 1.0)
         return shown
 
 
@@ -79,7 +84,8 @@ class Cleaner:
         """Return the state at rest on a first frame, (52,)."""
         still = np.zeros((self._config.layers, self._config.hidden), np.float32)
         first = np.clip(weights, 0.0, 1.0).astype(np.float32)
-        return CleanState(first, np.zeros(_SHAPES, np.float32), still, still, no_landing(_SHAPES), first)
+        rest = np.zeros(_SHAPES, np.float32)
+        return CleanState(first, rest, still, still, no_landing(_SHAPES), rest, first)
 
     def step(self, seen: npt.ArrayLike | None, step_s: float, state: CleanState) -> CleanState:
         """Advance one frame: state in, state out.
@@ -112,7 +118,9 @@ class Cleaner:
         jump = weights - state.weights
         landing = advance(state.landing, jump, state.velocity, float(step), present=frame is not None)
         last = state.seen if frame is None else frame
-        return CleanState(weights, jump / step, hidden, cell, landing, last, frozen_s)
+        returns = frame is not None and state.landing.gap_s > 0
+        pace = state.pace if returns else jump / step
+        return CleanState(weights, jump / step, hidden, cell, landing, pace, last, frozen_s)
 
 
 def _awake(frozen_s: float) -> float:

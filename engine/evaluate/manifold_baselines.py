@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from engine.manifold.patches import LabelSolver
+from engine.manifold.patches import LabelSolver, cotangent_laplacian
 from engine.take import Array
 
 LABEL_WEIGHT = 1e3
@@ -38,22 +38,6 @@ def laplacian_influence(rest: Array, triangles: npt.NDArray[np.integer], points:
     """Return how far each point moves each vertex, (n, m): differential coordinates kept (Sorkine 2004, ZLL17 [17])."""
     laplacian = cotangent_laplacian(rest, triangles)
     return LabelSolver(sp.csc_array(laplacian.T @ laplacian), points, beta=LABEL_WEIGHT).influence()
-
-
-def cotangent_laplacian(rest: Array, triangles: npt.NDArray[np.integer]) -> sp.csr_array:
-    """Return the cotangent Laplacian, (n, n); obtuse angles count a little instead of pushing away."""
-    corner = rest[triangles]
-    rows, columns, values = [], [], []
-    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        u, v = corner[:, b] - corner[:, a], corner[:, c] - corner[:, a]
-        area = np.linalg.norm(np.cross(u, v), axis=1)
-        weight = np.maximum(0.5 * (u * v).sum(axis=1) / np.maximum(area, 1e-9), 1e-3)
-        rows += [triangles[:, b], triangles[:, c]]
-        columns += [triangles[:, c], triangles[:, b]]
-        values += [weight, weight]
-    places = (np.concatenate(rows), np.concatenate(columns))
-    joined = sp.coo_array((np.concatenate(values), places), shape=2 * (len(rest),)).tocsr()
-    return sp.csr_array(sp.diags_array(np.asarray(joined.sum(axis=1)).ravel()) - joined)
 
 
 def _first_guess(source: Array, source_rest: Array, target_rest: Array) -> Array:

@@ -7,6 +7,7 @@ import socket
 import threading
 import time
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,14 +68,22 @@ class Listener:
     stream : what the datagrams are handed to
     bind : address to listen on; other computers and phones are heard only when this is not loopback
     port : UDP port; 0 picks a free one
+    on_frames : called on the listener's thread whenever there are new frames; must return at once
 
     Raises
     ------
     EngineError : when the port cannot be listened on
     """
 
-    def __init__(self, stream: Stream, *, bind: str = LOOPBACK, port: int = PORT) -> None:
-        self.stream = stream
+    def __init__(
+        self,
+        stream: Stream,
+        *,
+        bind: str = LOOPBACK,
+        port: int = PORT,
+        on_frames: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.stream, self._on_frames = stream, on_frames
         self._socket = _open(bind, port)
         self.address: tuple[str, int] = self._socket.getsockname()[:2]
         self._frames: deque[LiveFrame] = deque(maxlen=FRAMES)
@@ -122,6 +131,7 @@ class Listener:
                 if frame is not None:
                     self._frames.append(frame)
                     self._latencies.append(frame.latency_ms)
+                    self._on_frames()
 
     def _collect(self, waiting: deque[tuple[bytes, float]]) -> None:
         """Wait for a datagram, then take what else has come; the oldest go where there is no room.

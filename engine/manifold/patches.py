@@ -19,6 +19,8 @@ FLAT = 1e-7  # a direction this much thinner than the widest is one that the pat
 CENTRE_SHARE = 10.0  # weight of a patch's own vertex against all its neighbours together: ten heads of the second set
 COLUMNS = 4  # solved at a time: more wake threads that cost more than they do (80 at once took ten times as long)
 REACH = 2.0  # neighbours count by distance to the power of minus this
+NEAR = 0.05  # of a patch's mean distance: what is nearer counts no more, else a held pose would cut itself off
+COTANGENTS = (1e-3, 10.0)  # half of them, of a triangle's angles
 CHUNK_ENTRIES = 1 << 20  # of patch matrices that are in memory at a time
 Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may raise, to stop
 
@@ -84,7 +86,8 @@ def _weighted(pattern: sp.csr_array, points: Array) -> sp.csr_array:
     away = np.linalg.norm(points[row] - points[pattern.indices], axis=1)
     nearest = np.full(count, np.inf)
     np.minimum.at(nearest, row, np.where(away > 0, away, np.inf))
-    closest = np.where(np.isfinite(nearest), nearest, 1.0)[row]
+    typical = np.bincount(row, away, minlength=count) / np.maximum(np.diff(pattern.indptr) - 1, 1)
+    closest = np.where(np.isfinite(nearest), np.maximum(nearest, NEAR * typical), 1.0)[row]
     falloff = np.where(own, 0.0, (closest / np.maximum(away, closest)) ** REACH)
     total = np.maximum(np.bincount(row, falloff, minlength=count), 1e-12)
     weights = np.where(own, CENTRE_SHARE * total[row], falloff)
@@ -150,6 +153,25 @@ def _patch_matrices(members: Array, weights: Array, dimension: int, stiffness: f
     constant = root / np.linalg.norm(root, axis=1, keepdims=True)
     kept = np.eye(root.shape[1]) - constant[:, :, None] * constant[:, None, :] - tangent @ tangent.transpose(0, 2, 1)
     return np.asarray(root[:, :, None] * kept * root[:, None, :])
+
+
+def cotangent_laplacian(rest: Array, triangles: npt.NDArray[np.integer]) -> sp.csr_array:
+    """Return the cotangent Laplacian, (n, n), whose rows are a mesh's differential coordinates (Sorkine 2004).
+
+    Obtuse angles count a little instead of pushing away, slivers no more than an angle of three degrees.
+    """
+    corner = rest[triangles]
+    rows, columns, values = [], [], []
+    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        u, v = corner[:, b] - corner[:, a], corner[:, c] - corner[:, a]
+        area = np.linalg.norm(np.cross(u, v), axis=1)
+        weight = np.clip(0.5 * (u * v).sum(axis=1) / np.maximum(area, 1e-300), *COTANGENTS)
+        rows += [triangles[:, b], triangles[:, c]]
+        columns += [triangles[:, c], triangles[:, b]]
+        values += [weight, weight]
+    places = (np.concatenate(rows), np.concatenate(columns))
+    joined = sp.coo_array((np.concatenate(values), places), shape=2 * (len(rest),)).tocsr()
+    return sp.csr_array(sp.diags_array(np.asarray(joined.sum(axis=1)).ravel()) - joined)
 
 
 class LabelSolver:

@@ -81,7 +81,8 @@ def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
 
     project, exported = tmp_path / "Ärger 顔.retake", tmp_path / "Ärger 顔.csv"
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(project), ""))
-    QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
+        QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
     assert not session.edited
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(exported), ""))
     QTest.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)

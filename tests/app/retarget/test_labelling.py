@@ -67,7 +67,7 @@ def test_labels_are_met_and_the_least_certain_frame_is_offered_next(
 
     choose_file.append(tmp_path / "labels.json")
     click(labelling.panel.save_button)
-    assert read(tmp_path / "labels.json").poses == dict(labelling.retargeting.target.labels)
+    assert read(tmp_path / "labels.json").labels == dict(labelling.retargeting.target.labels)
     for _ in range(3):
         labelling._session.undo.undo()
     assert not labelling.retargeting.target.labels
