@@ -80,8 +80,11 @@ class Labelling:
 
     def write(self, path: Path) -> None:
         """Write labels; raises `EngineError`."""
-        target = self._retargeting.target
-        files.write(LabelFile(target.labels, target.path), path)
+        target, folder = self._retargeting.target, path.absolute().parent
+        head = target.path.absolute() if target.path else None
+        if head is not None and head.is_relative_to(folder):
+            head = head.relative_to(folder)  # so that the two can move together
+        files.write(LabelFile(target.labels, head), path)
 
     def _change(self, labels: Mapping[int, Pose], title: str) -> None:
         state = self._retargeting

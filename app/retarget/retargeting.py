@@ -11,6 +11,7 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
+from app.commands import EditCommand
 from app.retarget.carry import (
     Carried,
     Carrier,
@@ -21,9 +22,9 @@ from app.retarget.carry import (
     opened,
     posed,
 )
-from app.retarget.commands import KeepCommand, TargetCommand
+from app.retarget.commands import TargetCommand
 from app.session import Change, Session
-from engine.character import bundled
+from engine.character import Character, bundled
 from engine.formats import markers
 from engine.spacetime.layout import MARKERS
 from engine.spacetime.retarget import Matching
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 LIVE_FRAMES = 12  # on either side of the playhead
 AHEAD_FRAMES = 6  # how near the end of what is known the playhead may come before more is asked for
 MOVEMENT, LABELS = "movement", "labels"
+KIND = "retarget"  # of the edits that put a take on another head
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +96,9 @@ class Retargeting(QObject):
             thread.done.connect(self._deliver)
             thread.failed.connect(self._refused)
         self.progress.connect(self._advance)
+        self._heads: dict[str, Character | None] = {"": None}  # by path; the bundled one has none
         session.changed.connect(self._on_change)
+        session.undo.indexChanged.connect(self._follow)
 
     # --- what there is
 
@@ -294,8 +298,8 @@ class Retargeting(QObject):
 
         def then(patch: Patch) -> None:
             if session.take is take:
-                played_on = None if head is bundled() else head
-                session.undo.push(KeepCommand(session, patch, f"carry to {head.name}", played_on, inputs))
+                self._heads[str(target.path or "")] = None if head is bundled() else head
+                session.undo.push(EditCommand(session, patch, f"carry to {head.name}", kind=KIND, inputs=inputs))
 
         self.submit(work, then)
 
@@ -313,6 +317,7 @@ class Retargeting(QObject):
 
     def close(self) -> None:
         """Stop what is under way and end the threads."""
+        self._session.undo.indexChanged.disconnect(self._follow)  # clearing itself at its end, it would still tell us
         self.cancel()
         self._whole.stop()
         self._short.stop()
@@ -325,6 +330,24 @@ class Retargeting(QObject):
         self.result, self.draft_pose = None, {}
         self.ask_live()
         self.changed.emit()
+
+    def _follow(self, *_: int) -> None:
+        """Put the take on the head of the last retarget in effect: undone, redone or opened with a project."""
+        session = self._session
+        if session.signalsBlocked():
+            return  # a project is being opened; it says so when it is
+        contents = session.contents()
+        kept = [edit for edit in contents.edits[: contents.position] if edit.kind == KIND]
+        name = str(kept[-1].inputs.get("target", "")) if kept else ""
+        if name not in self._heads:
+            self._heads[name] = None  # where it cannot be read, once is enough
+            self.submit(lambda: opened(Path(name)), lambda target: self._found(name, target))
+        elif self._heads[name] is not session.character:
+            session.play_on(self._heads[name])
+
+    def _found(self, name: str, target: Target) -> None:
+        self._heads[name] = target.head
+        self._follow()
 
     def _deliver(self, errand: Errand, result: Any) -> None:
         errand.then(result)
@@ -339,6 +362,7 @@ class Retargeting(QObject):
             if self.capture is not None and self._session.take is not self.capture.take:
                 self.capture, self._capture_path = None, None
             self.target, self.suggestions = replace(self.target, labels={}), []
+            self._follow()
         if change & (Change.TAKE | Change.CURVES | Change.CHARACTER):
             self._performance, self.live, self._live_for = None, None, ()
             self._begin_anew()

@@ -43,24 +43,9 @@ def click_at(window: MainWindow, x: float, y: float) -> None:
     QTest.mouseClick(window.preview.face, LEFT, PLAIN, QPoint(round(x), round(y)))
 
 
-def test_a_take_is_carried_to_another_head_and_back(
-    qtbot: QtBot, window: MainWindow, broad_head: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    session, retarget, face = window.session, window.retarget, window.preview.face
-    take = read_take(demo.BUNDLED)
-    session.open(Take(take.weights[60:100], take.fps), None)  # short, so that solving it takes no minute
-    session.move_playhead(FRAME)
-    alone = window.preview.width()
-    QTest.keyClick(window, Qt.Key.Key_T)
-    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(broad_head), ""))
-    QTest.mouseClick(retarget.panel.target_button, LEFT)
-    qtbot.waitUntil(lambda: retarget.retargeting.ready, timeout=30_000)
-    retargeted(qtbot, window)
-    assert face.overlay is not None and len(face.overlay.sides) == 2 and window.preview.width() > alone
-    known = retarget.retargeting.face_at(FRAME)
-    assert known is not None and known.any()
-
-    # a marker is chosen by its dot on the source, and moved by a click on the target
+def place_the_chin(qtbot: QtBot, window: MainWindow) -> None:
+    """Choose a marker by its dot on the source, and move it by a click on the target; dragging places nothing."""
+    retarget, face = window.retarget, window.preview.face
     QTest.mouseClick(retarget.places.show_dots, LEFT, PLAIN, QPoint(10, retarget.places.show_dots.height() // 2))
     retargeted(qtbot, window)
     overlay = face.overlay
@@ -84,11 +69,31 @@ def test_a_take_is_carried_to_another_head_and_back(
         atol=1e-3,
     )
 
-    # dragging still orbits and places nothing
     QTest.mousePress(face, LEFT, PLAIN, QPoint(round(x), round(y)))
     QTest.mouseMove(face, QPoint(round(x) + 60, round(y)))
     QTest.mouseRelease(face, LEFT, PLAIN, QPoint(round(x) + 60, round(y)))
     assert face.camera.around_deg != 0 and retarget.retargeting.target.places["chin"] == moved
+
+
+def test_a_take_is_carried_to_another_head_and_back(
+    qtbot: QtBot, window: MainWindow, broad_head: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session, retarget, face = window.session, window.retarget, window.preview.face
+    take = read_take(demo.BUNDLED)
+    session.open(Take(take.weights[60:100], take.fps), None)  # short, so that solving it takes no minute
+    session.move_playhead(FRAME)
+    alone = window.preview.width()
+    QTest.keyClick(window, Qt.Key.Key_T)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(broad_head), ""))
+    QTest.mouseClick(retarget.panel.target_button, LEFT)
+    qtbot.waitUntil(lambda: retarget.retargeting.ready, timeout=30_000)
+    retargeted(qtbot, window)
+    assert face.overlay is not None and len(face.overlay.sides) == 2 and window.preview.width() > alone
+    known = retarget.retargeting.face_at(FRAME)
+    assert known is not None and known.any()
+
+    before = retarget.retargeting.target.places["chin"]
+    place_the_chin(qtbot, window)
 
     steps = session.undo.count()
     QTest.keyClick(window, Qt.Key.Key_Return, CONTROL)

@@ -85,7 +85,7 @@ def test_solving_without_a_label_says_what_to_do(qtbot: QtBot, labelling: Retarg
 def test_labels_of_a_longer_take_are_refused(
     qtbot: QtBot, labelling: RetargetActions, tmp_path: Path, choose_file: list[Path]
 ) -> None:
-    (tmp_path / "labels.json").write_text('{"target": "", "labels": [{"frame": 60, "weights": {}}]}')
+    (tmp_path / "labels.json").write_text('{"labels": [{"frame": 60, "weights": {}}]}')
     choose_file.append(tmp_path / "labels.json")
     with qtbot.waitSignal(labelling.failed) as told:
         click(labelling.panel.read_button)

@@ -9,11 +9,14 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QPushButton
 from pytestqt.qtbot import QtBot
 
+from app.commands import restored
 from app.retarget.actions import RetargetActions
+from app.retarget.carry import Carried
 from app.retarget.sides import sides
 from app.retarget.strengths import STEPS, position, strength_at
 from engine.character import Character, bundled
 from engine.formats.markers import Markers, write
+from engine.project import replay
 from engine.spacetime.layout import standard
 from engine.spacetime.retarget import Matching
 from engine.spacetime.retarget import retarget as carry
@@ -92,6 +95,27 @@ def test_solving_keeping_and_undoing_is_what_the_engine_does_and_one_step(
     session.undo.undo()
     np.testing.assert_array_equal(session.take.weights, short_take.weights)
     assert session.character is None and aimed.retargeting.ready
+
+
+def test_a_project_that_is_opened_again_shows_the_head_it_was_kept_on(
+    qtbot: QtBot, aimed: RetargetActions, other_head: Path
+) -> None:
+    session = aimed._session
+    aimed.retargeting.show(Carried(session.take))
+    click(aimed.panel.keep_button)
+    qtbot.waitUntil(lambda: session.character is not None, timeout=20_000)
+    contents = session.contents()
+    assert contents.edits[-1].inputs["target"] == str(other_head)
+
+    session.open(contents.original, None)
+    assert session.character is None
+    state = replay(contents)
+    aimed.retargeting._heads = {"": None}  # as in a program that was just started
+    session.restore(contents, None, restored(session, contents, state), state)
+    qtbot.waitUntil(lambda: session.character is not None, timeout=20_000)
+    assert session.character.name == "broad"
+    session.undo.undo()
+    assert session.character is None
 
 
 def test_a_solve_that_is_cancelled_leaves_everything_as_it_was(qtbot: QtBot, aimed: RetargetActions) -> None:
