@@ -6,7 +6,8 @@ import logging
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -20,11 +21,14 @@ from app.session import Change, Session
 from app.settings import NAME
 from engine import project
 from engine.errors import EngineError
+from engine.formats import read_take
 from engine.project import Contents, Project
 from engine.take import timecode
 
 log = logging.getLogger(__name__)
 STALE_S = 86_400.0  # a file that was being made this long ago never will be
+RECORDINGS = "*.partial*.csv"
+ABANDONED_S = 5.0  # a recording is touched every second
 PATIENCE_S = 0.3  # a wait that nobody notices when a take is closed
 
 
@@ -65,6 +69,15 @@ class _Saving:
     path: Path
 
 
+@contextmanager
+def _as_unsaved_work(path: Path) -> Iterator[None]:
+    """Let an error speak of unsaved work: the name of its file says nothing to the user."""
+    try:
+        yield
+    except EngineError as error:
+        raise EngineError(error.sentence.replace(path.name, "unsaved work"), error.advice) from error
+
+
 class Keeper(QObject):
     """Commits each change of a session's undo stack and marks, and saves projects, on a thread of its own.
 
@@ -78,6 +91,7 @@ class Keeper(QObject):
     """
 
     failed = Signal(str, str)  # sentence, advice
+    mended = Signal(str)  # the sentence of a failure that is over
     kept = Signal(object)  # the Contents that are safe on disk
     saved = Signal(object)  # the path of a project that was just saved
     progress = Signal(float)  # the share of the save that is done, from the keeper's thread
@@ -85,11 +99,12 @@ class Keeper(QObject):
 
     def __init__(self, session: Session, folder: Path | None = None) -> None:
         super().__init__()
-        self._session, self._folder = session, folder or unsaved_folder()
+        self._session, self.folder = session, folder or unsaved_folder()
         self._kept: _Kept | None = None
         self._newest = session.contents()  # what is to be written
         self._wished: _Saving | None = None
         self._stopped = False
+        self._waits: Contents | None = None  # steps that could not be kept while a copy was made
         self._afterwards: list[Callable[[], None]] = []
         self._opening = False
         self._told = ""
@@ -117,15 +132,15 @@ class Keeper(QObject):
         return self._kept.project if self._kept is not None else None
 
     def when_idle(self, then: Callable[[], None]) -> bool:
-        """Do something when nothing is being written any more; returns whether that is so already, and it is done.
+        """Do something when nothing is being written any more; returns whether nothing is.
 
         What waits is dropped where a save fails.
         """
+        self._afterwards.append(then)
         if not self._work.finish(PATIENCE_S):
-            self._afterwards.append(then)
             return False
         QCoreApplication.sendPostedEvents(self, QEvent.Type.MetaCall.value)  # what came of it is heard of first
-        then()
+        self._go_on()
         return True
 
     # --- saving and opening
@@ -135,6 +150,8 @@ class Keeper(QObject):
 
         Raises `EngineError`. One that cannot be written is opened all the same, as unsaved work.
         """
+        if self.path is not None and path.exists() and path.samefile(self.path):
+            self._detach(delete=False)  # a file is open once: what is in memory is in it
         self._adopt(Project.open(path), path, saved=True)
 
     def save_as(self, path: Path) -> None:
@@ -150,6 +167,11 @@ class Keeper(QObject):
     def stop_saving(self) -> None:
         """Give up the save under way; each step goes on being kept where it was before."""
         self._stopped = True
+
+    def keep(self) -> None:
+        """Write what is open even where nothing was edited: a recording exists nowhere else."""
+        self._session.undo.resetClean()
+        self._submit(self._session.contents())
 
     def forget(self) -> None:
         """Remove the unsaved work, after it was exported or discarded; a saved project stays as it is."""
@@ -167,8 +189,9 @@ class Keeper(QObject):
     def left_over(self) -> list[LeftOver]:
         """Return the unsaved work of programs that run no more, newest first."""
         self._sweep()
+        self._take_in_recordings()
         found = []
-        for path in self._folder.glob(f"*{project.ENDING}"):
+        for path in self.folder.glob(f"*{project.ENDING}"):
             try:
                 summary = project.peek(path)
             except (EngineError, OSError) as error:  # open elsewhere, or damaged: it is left where it is
@@ -217,13 +240,18 @@ class Keeper(QObject):
             if isinstance(wanted, _Saving):
                 return self._save(wanted.path)
             if self._kept is None:
-                self._kept = _Kept(project.create(self._new_path(), wanted), saved=False)
+                path = self._new_path()
+                with _as_unsaved_work(path):
+                    self._kept = _Kept(project.create(path, wanted), saved=False)
             elif wanted is not self._kept.project.contents:  # a save may have brought them already
-                self._kept.project.put(wanted)
+                with nullcontext() if self._kept.saved else _as_unsaved_work(self._kept.project.path):
+                    self._kept.project.put(wanted)
             return self._kept.project
 
     def _written(self, wanted: Contents | _Saving, result: Project) -> None:
-        self._told = ""
+        if self._told:
+            self.mended.emit(self._told)
+            self._told = ""
         if isinstance(wanted, _Saving):
             self._arrived(wanted, result)
         else:
@@ -259,10 +287,10 @@ class Keeper(QObject):
         self.saving_changed.emit()
 
     def _go_on(self) -> None:
-        if self._afterwards and self._work.idle:
+        if self._work.idle:
             waiting, self._afterwards = self._afterwards, []
             for then in waiting:
-                self.when_idle(then)
+                then()
 
     def _adopt(self, opened: Project, path: Path | None, *, saved: bool) -> None:
         self._detach(delete=False)
@@ -323,25 +351,37 @@ class Keeper(QObject):
         """Put the steps made meanwhile in the file that is being copied, and so in the copy."""
         self._report(share)
         old, newest = self._project, self._newest
-        if old is not None and newest is not old.contents and newest.original is old.contents.original:
-            try:
-                old.put(newest)
-            except EngineError as error:
-                log.warning("a step waits for the save to end: %s", error)
+        if old is None or newest in (old.contents, self._waits) or newest.original is not old.contents.original:
+            return
+        try:
+            old.put(newest)
+        except EngineError as error:
+            self._waits = newest  # once is enough: each attempt lets the copy begin anew
+            log.warning("a step waits for the save to end: %s", error)
 
     def _new_path(self) -> Path:
         try:
-            self._folder.mkdir(parents=True, exist_ok=True)
+            self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             reason = (error.strerror or "unknown reason").lower()
             raise EngineError(
-                f"Unsaved work cannot be kept in {self._folder}: {reason}.", "Save it, so that nothing can be lost."
+                f"Unsaved work cannot be kept in {self.folder}: {reason}.", "Save it, so that nothing can be lost."
             ) from error
-        return self._folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}-{time.monotonic_ns()}{project.ENDING}"
+        return self.folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}-{time.monotonic_ns()}{project.ENDING}"
+
+    def _take_in_recordings(self) -> None:
+        """Make unsaved work of live recordings that a program did not come to end; one still being made is left alone."""
+        for path in self.folder.glob(RECORDINGS):
+            try:
+                if time.time() - path.stat().st_mtime > ABANDONED_S:
+                    project.create(self._new_path(), Contents(read_take(path))).close()
+                    path.unlink()
+            except (EngineError, OSError) as error:
+                log.info("%s is not offered: %s", path.name, error)
 
     def _sweep(self) -> None:
         """Remove what a killed program was making: it never became a project."""
-        for path in self._folder.glob(".*.part"):
+        for path in self.folder.glob(".*.part"):
             try:
                 if time.time() - path.stat().st_mtime > STALE_S:
                     path.unlink()

@@ -40,12 +40,13 @@ class MissingMedia(QFrame):
         widget = QWidget()
         row = QHBoxLayout(widget)
         row.setContentsMargins(0, 0, 0, 0)
-        advice = "" if found.changed is not None else " It was moved, renamed or deleted; everything else is here."
+        changed = found.changed is not None
+        advice = " Its content has changed." if changed else " It was moved, renamed or deleted."
         text = QLabel(found.sentence + advice)
         text.setWordWrap(True)
         row.addWidget(text, 1)
         buttons = [(f"Locate {name_of(found.media)}…", self.locate.emit), ("Detach it", self.detach.emit)]
-        if found.changed is not None:
+        if changed:
             buttons.insert(0, ("Use it all the same", self.accept.emit))
         for number, (title, do) in enumerate(buttons):
             button = QPushButton(title)
@@ -53,9 +54,14 @@ class MissingMedia(QFrame):
             button.clicked.connect(partial(_called, do, kind))
             row.addWidget(button)
         later = QPushButton("Not now")
-        later.clicked.connect(self.hide)
+        later.clicked.connect(partial(self._put_away, widget))
         row.addWidget(later)
         return widget
+
+    def _put_away(self, row: QWidget, *_: bool) -> None:
+        row.hide()
+        rows = [item.widget() for index in range(self._column.count()) if (item := self._column.itemAt(index))]
+        self.setVisible(any(each is not None and not each.isHidden() for each in rows))
 
 
 def _called(do, kind: str, *_: bool) -> None:  # type: ignore[no-untyped-def]

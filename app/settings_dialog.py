@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QEvent, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -45,6 +45,7 @@ class SettingsDialog(QDialog):
     def __init__(self, settings: Settings, media: Media, parent: QWidget) -> None:
         super().__init__(parent)
         self._settings, self._media = settings, media
+        self._speakers: list[str] = []
         self.setWindowTitle("Settings")
         self.setModal(False)
         self.setFixedWidth(WIDTH_PX)
@@ -123,15 +124,21 @@ class SettingsDialog(QDialog):
         with QSignalBlocker(self.scrubs):
             self.scrubs.setChecked(settings.scrubs)
         self.author.setText(settings.author)
-        self._show_speakers(None, [])
+        self._list_speakers()
         self._show_playing()
         self._show_recent()
 
     def showEvent(self, event: QShowEvent) -> None:
-        """Show the settings as they are, and ask which loudspeakers there are."""
+        """Ask which loudspeakers there are."""
         super().showEvent(event)
         self.refresh()
         self._asking.submit(None)
+
+    def event(self, event: QEvent) -> bool:
+        """Show what was changed elsewhere, when one comes back to the dialog."""
+        if event.type() == QEvent.Type.WindowActivate:
+            self.refresh()
+        return bool(super().event(event))
 
     def close_thread(self) -> None:
         """End the thread that asks for loudspeakers."""
@@ -152,10 +159,14 @@ class SettingsDialog(QDialog):
         self.clear.setEnabled(count > 0)
 
     def _show_speakers(self, _: object, names: list[str]) -> None:
+        self._speakers = names
+        self._list_speakers()
+
+    def _list_speakers(self) -> None:
         """List the loudspeakers; the one that was chosen stays in the list while it is unplugged."""
         wanted = self._settings.speaker
         self.speaker.clear()
-        self.speaker.addItems(list(dict.fromkeys([SYSTEMS_OWN, *names, *([wanted] if wanted else [])])))
+        self.speaker.addItems(list(dict.fromkeys([SYSTEMS_OWN, *self._speakers, *([wanted] if wanted else [])])))
         self.speaker.setCurrentText(wanted or SYSTEMS_OWN)
 
     def _show_playing(self) -> None:

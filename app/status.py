@@ -15,7 +15,7 @@ from engine.take import timecode
 NAMES = ("take", "rate", "length", "place", "notice", "engine", "sound", "saved", "speed")
 LATENCIES = 20  # that the median is taken of
 SHOWN_AFTER_MS = 150  # a shorter save needs no bar
-BAR_PX, STEPS = 120, 1000
+BAR_PX, BAR_HEIGHT_PX, STEPS = 96, 8, 1000
 
 
 class StatusBar(QFrame):
@@ -34,9 +34,11 @@ class StatusBar(QFrame):
         self.in_frames = False
         self._labels = {name: QLabel() for name in NAMES}
         self.bar = QProgressBar(minimum=0, maximum=STEPS, textVisible=False)
-        self.bar.setFixedWidth(BAR_PX)
+        self.bar.setFixedSize(BAR_PX, BAR_HEIGHT_PX)
         self.stop = QToolButton()
         self.stop.setText("✕")
+        self.stop.setFixedSize(2 * BAR_HEIGHT_PX, 2 * BAR_HEIGHT_PX)  # no higher than a line: nothing moves
+        self.stop.setStyleSheet("padding: 0;")
         self.stop.setToolTip("Stop saving")
         self.stop.setAccessibleName("Stop saving")
         self.stop.clicked.connect(keeper.stop_saving)
@@ -58,10 +60,13 @@ class StatusBar(QFrame):
         row.setSpacing(3 * GRID)
         for name, label in self._labels.items():
             label.setProperty("quiet", name != "take")
-            if name == "saved":
-                row.addWidget(self.bar)
-                row.addWidget(self.stop)
             row.addWidget(label, 1 if name == "notice" else 0)
+            if name == "saved":
+                saving = QHBoxLayout()
+                saving.setSpacing(GRID // 2)
+                saving.addWidget(self.bar)
+                saving.addWidget(self.stop)
+                row.addLayout(saving)
 
     def __getitem__(self, name: str) -> QLabel:
         return self._labels[name]

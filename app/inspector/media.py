@@ -10,7 +10,8 @@ from app.session import MAX_OFFSET_S, MEDIA, Change, Session
 from engine.project import name_of
 
 WORDS = {"audio": "Sound", "video": "Video"}
-NAME_CHARACTERS = 30
+NAME_CHARACTERS = 26
+MS_PX, FRAMES_PX = 78, 74
 
 
 class MediaSection(Section):
@@ -64,7 +65,8 @@ class _Box(QWidget):
         self.away.setAccessibleName(f"Detach the {word.lower()}")
         self.milliseconds, self.frames = QDoubleSpinBox(decimals=0), QDoubleSpinBox(decimals=2)
         keys = "Alt+Shift+←/→" if kind == "video" else "Alt+←/→, or drag the waveform,"
-        for box, suffix, step in ((self.milliseconds, " ms", 10.0), (self.frames, " fr", 1.0)):
+        for box, suffix, step, width in ((self.milliseconds, " ms", 10.0, MS_PX), (self.frames, " fr", 1.0, FRAMES_PX)):
+            box.setFixedWidth(width)
             box.setSuffix(suffix)
             box.setSingleStep(step)
             box.setKeyboardTracking(False)
@@ -74,7 +76,9 @@ class _Box(QWidget):
         top, bottom = QHBoxLayout(), QHBoxLayout()
         top.addWidget(self.name, 1)
         top.addWidget(self.away)
-        bottom.addWidget(quiet("begins at"), 1)
+        words = quiet("begins at")
+        words.setWordWrap(False)
+        bottom.addWidget(words, 1)
         bottom.addWidget(self.milliseconds)
         bottom.addWidget(self.frames)
         column = QVBoxLayout(self)

@@ -258,6 +258,7 @@ class PreviewPanel(QFrame):
     def show_live(self, weights: Array | None, arrived_s: float = 0.0) -> None:
         """Show a live face, (52,) weights, in place of the take's; None goes back to the take."""
         self._live = weights
+        self._show_frame()
         self.refresh(since=arrived_s)
 
     def show_sides(self, sides: tuple[Side, ...]) -> None:
@@ -282,6 +283,9 @@ class PreviewPanel(QFrame):
         if not self._off and faces:
             size = (STRIP_PX[0] * len(faces), STRIP_PX[1])
             self.drawing.submit(Wanted(Shot(tuple(faces), STRIP_CAMERA, size), self._character, strip=True), "strip")
+
+    def _show_frame(self) -> None:
+        self._frame_label.setText("live" if self._live is not None else f"frame {self._session.playhead:,}")
 
     def _shot(self) -> Shot:
         session, view = self._session, self.face.view
@@ -346,7 +350,7 @@ class PreviewPanel(QFrame):
             self._character = self._session.character
         if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.CHARACTER):
             session = self._session
-            self._frame_label.setText(f"frame {session.playhead:,}")
+            self._show_frame()
             drafted = change & Change.DRAFT and session.draft is not None
             self.refresh(since=self._inference.since if drafted else 0.0)
 

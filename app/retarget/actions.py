@@ -82,6 +82,11 @@ class RetargetActions(QObject):
         """Place the chosen marker on the vertex that was clicked."""
         self.placing.place(vertex)
 
+    def take_in(self, path: Path) -> None:
+        """Carry a capture that was dropped on the window."""
+        self.retarget_tool()
+        self.retargeting.open_markers(path)
+
     def _show(self) -> None:
         self.shown.emit(
             sides(self._session, self.retargeting, self.placing.chosen, dots=self.places.show_dots.isChecked())

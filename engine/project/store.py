@@ -94,16 +94,23 @@ class Project:
     def save_as(self, path: Path, report: Report = lambda _: None) -> Project:
         """Copy the file to a path and open the copy; what was at the path stays there, whole, until the copy is.
 
-        `report` may `put` further contents: SQLite brings them to the part that is copied already.
+        `report` may `put` further contents: SQLite brings them to the part that is copied already, until all is.
         """
         database = self._writable()
         if path.exists() and path.samefile(self.path):
             return self
         _settle(path)
         with sentences(path.name), replacement(path) as temporary, closing(_scrap(temporary)) as copy:
-            database.backup(copy, pages=STEP_PAGES, progress=lambda _, left, pages: report(1 - left / max(1, pages)))
+            copied = self._contents
+
+            def step(_: int, left: int, pages: int) -> None:
+                nonlocal copied
+                copied = self._contents  # what is put after the last step is in the old file alone
+                report(1 - left / max(1, pages))
+
+            database.backup(copy, pages=STEP_PAGES, progress=step)
             copy.close()
-        return _attach(path, self._contents)
+        return _attach(path, copied)
 
     def close(self) -> None:
         """Let go of the file."""

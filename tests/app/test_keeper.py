@@ -261,13 +261,27 @@ def test_a_full_disk_keeps_the_work_in_memory_until_there_is_room(qtbot: QtBot, 
     assert first._session.edited and first._session.undo.count() == 2
     assert "no room left" in refused(qtbot, first, tmp_path / "a.retake")
     database.execute("PRAGMA max_page_count = 1000000")
-    kept(qtbot, first, lambda: push(first._session, 2))
+    with qtbot.waitSignal(first.mended, timeout=10_000) as over:
+        kept(qtbot, first, lambda: push(first._session, 2))
+    assert over.args == ["There is no room left on the disk for a.retake."]
     assert not first._session.edited
     (tmp_path / "a.retake").unlink()
     push(first._session, 3)
     saved(qtbot, first, tmp_path / "a.retake")
     first.close()
     assert len(Project.open(tmp_path / "a.retake").contents.edits) == 4
+
+
+def test_no_room_for_unsaved_work_is_told_without_the_name_of_its_file(
+    qtbot: QtBot, make: Made, tmp_path: Path
+) -> None:
+    first = make()
+    kept(qtbot, first, lambda: push(first._session, 0))
+    database = first._project._database
+    database.execute(f"PRAGMA max_page_count = {database.execute('PRAGMA page_count').fetchone()[0]}")
+    with qtbot.waitSignal(first.failed, timeout=10_000) as told:
+        push(first._session, 1)
+    assert told.args[0] == "There is no room left on the disk for unsaved work."
 
 
 def test_what_cannot_be_written_is_edited_as_unsaved_work(
@@ -317,12 +331,12 @@ def test_a_running_program_keeps_its_work_to_itself(make: Made, tmp_path: Path) 
 
 @pytest.mark.parametrize("seed", range(10))
 def test_a_kill_loses_no_edit_that_was_reported_as_finished(seed: int, tmp_path: Path) -> None:
-    kills.check(seed, tmp_path, saving=False)
+    kills.check(seed, tmp_path, "edit")
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_kill_while_saving_never_harms_the_old_file(seed: int, tmp_path: Path) -> None:
-    kills.check(seed, tmp_path, saving=True)
+    kills.check(seed, tmp_path, "save")
 
 
 def test_the_session_s_contents_are_what_its_edits_come_to(make: Made) -> None:

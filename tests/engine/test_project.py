@@ -320,6 +320,61 @@ def test_saving_as_goes_on_in_the_new_file_and_leaves_the_old_one(contents: Cont
     assert (reopened(tmp_path / "a.retake").position, reopened(tmp_path / "b.retake").position) == (3, 0)
 
 
+def test_steps_put_while_a_copy_is_made_are_in_the_copy(
+    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("engine.project.store.STEP_PAGES", 1)
+    old, shares = project.create(tmp_path / "a.retake", replace(contents, edits=(), position=0)), []
+
+    def report(share: float) -> None:
+        shares.append(share)
+        count = min(len(shares), len(contents.edits))
+        old.put(replace(contents, edits=contents.edits[:count], position=count))
+
+    new = old.save_as(tmp_path / "b.retake", report)
+    assert len(new.contents.edits) == len(contents.edits) < len(shares) and shares[-1] == 1.0
+    new.close()
+    again = Project.open(tmp_path / "b.retake").contents
+    assert [edit.title for edit in again.edits] == [edit.title for edit in contents.edits]
+    for left, right in zip(again.edits, contents.edits, strict=True):
+        np.testing.assert_array_equal(left.weights, right.weights)
+
+
+def test_a_step_put_when_all_is_copied_is_missing_from_the_copy_and_known_to_be(
+    contents: Contents, tmp_path: Path
+) -> None:
+    old = project.create(tmp_path / "a.retake", replace(contents, edits=(), position=0))
+
+    def report(share: float) -> None:
+        if share == 1.0:
+            old.put(contents)
+
+    new = old.save_as(tmp_path / "b.retake", report)
+    assert new.contents.edits == ()
+    new.put(contents)
+    new.close()
+    assert len(Project.open(tmp_path / "b.retake").contents.edits) == len(contents.edits)
+
+
+@pytest.mark.parametrize("how", ["create", "save_as"])
+def test_progress_grows_to_all_of_it_and_can_stop_the_work(contents: Contents, tmp_path: Path, how: str) -> None:
+    work, shares = project.create(tmp_path / "work.retake", contents), []
+    target = tmp_path / "b.retake"
+    target.write_bytes(b"an older file")
+
+    def write(report: Callable[[float], None]) -> Project:
+        return project.create(target, contents, report) if how == "create" else work.save_as(target, report)
+
+    def stop(share: float) -> None:
+        raise EngineError("enough")
+
+    with pytest.raises(EngineError, match="enough"):
+        write(stop)
+    assert target.read_bytes() == b"an older file" and len(list(tmp_path.glob(".*.part"))) == 0
+    write(shares.append).close()
+    assert shares == sorted(shares) and shares[-1] == 1.0
+
+
 def test_a_project_that_is_open_is_left_alone_by_others(contents: Contents, tmp_path: Path) -> None:
     path = tmp_path / "a.retake"
     opened = project.create(path, contents)
