@@ -210,8 +210,9 @@ class MainWindow(QMainWindow):
         self.retarget.shown.connect(self.preview.show_sides)
         self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
         self.preview.picked.connect(self.retarget.pick)
-        self.preview.dot_clicked.connect(self.retarget.retargeting.choose)
+        self.preview.dot_clicked.connect(self.retarget.placing.choose)
         self.edits.stop_else = self.retarget.retargeting.cancel
+        self.files.capture_dropped.connect(self.retarget.take_in)
         self.files.character_chosen.connect(self.preview.show_character)
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
