@@ -37,6 +37,7 @@ class EditActions(QObject):
         self._session, self._inference, self._curves, self._filling = session, inference, curves, filling
         self._copied: Array | None = None
         self.cutoff_hz: Callable[[], float] = lambda: 6.0
+        self.let_go: Callable[[], bool] = lambda: False  # of what is held on the timeline; whether there was any
         self.stop_else: Callable[[], bool] = lambda: False  # stops other work under way; whether there was any
 
     def undo(self) -> None:
@@ -60,7 +61,7 @@ class EditActions(QObject):
             self._filling.drop()
         elif self._inference.busy:
             self._inference.cancel()
-        elif not self.stop_else():
+        elif not (self.let_go() or self.stop_else()):
             self._session.select(None)
 
     def close_here(self) -> None:

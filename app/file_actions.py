@@ -35,6 +35,7 @@ class FileActions(QObject):
 
     told = Signal(str, str)  # sentence, advice
     opened = Signal()
+    capture_dropped = Signal(object)  # the path of a file of markers
     character_chosen = Signal(object)  # a Character, or None for the bundled one
     cues_dropped = Signal(object)  # the Path of a file that says what is said when
 
@@ -82,6 +83,8 @@ class FileActions(QObject):
             self._media.attach("video", path)
         elif ending in cues.READERS:
             self.cues_dropped.emit(path)
+        elif ending in CAPTURES:
+            self.capture_dropped.emit(path)
         else:
             self.load(path)
 
@@ -127,6 +130,7 @@ class FileActions(QObject):
 
         def show() -> None:
             self._session.open(take, None)
+            self._keeper.keep()
             self.opened.emit()
 
         self.when_safe(show)

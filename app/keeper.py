@@ -21,11 +21,14 @@ from app.session import Change, Session
 from app.settings import NAME
 from engine import project
 from engine.errors import EngineError
+from engine.formats import read_take
 from engine.project import Contents, Project
 from engine.take import timecode
 
 log = logging.getLogger(__name__)
 STALE_S = 86_400.0  # a file that was being made this long ago never will be
+RECORDINGS = "*.partial*.csv"
+ABANDONED_S = 5.0  # a recording is touched every second
 PATIENCE_S = 0.3  # a wait that nobody notices when a take is closed
 
 
@@ -96,7 +99,7 @@ class Keeper(QObject):
 
     def __init__(self, session: Session, folder: Path | None = None) -> None:
         super().__init__()
-        self._session, self._folder = session, folder or unsaved_folder()
+        self._session, self.folder = session, folder or unsaved_folder()
         self._kept: _Kept | None = None
         self._newest = session.contents()  # what is to be written
         self._wished: _Saving | None = None
@@ -165,6 +168,11 @@ class Keeper(QObject):
         """Give up the save under way; each step goes on being kept where it was before."""
         self._stopped = True
 
+    def keep(self) -> None:
+        """Write what is open even where nothing was edited: a recording exists nowhere else."""
+        self._session.undo.resetClean()
+        self._submit(self._session.contents())
+
     def forget(self) -> None:
         """Remove the unsaved work, after it was exported or discarded; a saved project stays as it is."""
         self._detach(delete=True)
@@ -181,8 +189,9 @@ class Keeper(QObject):
     def left_over(self) -> list[LeftOver]:
         """Return the unsaved work of programs that run no more, newest first."""
         self._sweep()
+        self._take_in_recordings()
         found = []
-        for path in self._folder.glob(f"*{project.ENDING}"):
+        for path in self.folder.glob(f"*{project.ENDING}"):
             try:
                 summary = project.peek(path)
             except (EngineError, OSError) as error:  # open elsewhere, or damaged: it is left where it is
@@ -352,17 +361,27 @@ class Keeper(QObject):
 
     def _new_path(self) -> Path:
         try:
-            self._folder.mkdir(parents=True, exist_ok=True)
+            self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             reason = (error.strerror or "unknown reason").lower()
             raise EngineError(
-                f"Unsaved work cannot be kept in {self._folder}: {reason}.", "Save it, so that nothing can be lost."
+                f"Unsaved work cannot be kept in {self.folder}: {reason}.", "Save it, so that nothing can be lost."
             ) from error
-        return self._folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}-{time.monotonic_ns()}{project.ENDING}"
+        return self.folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}-{time.monotonic_ns()}{project.ENDING}"
+
+    def _take_in_recordings(self) -> None:
+        """Make unsaved work of live recordings that a program did not come to end; one still being made is left alone."""
+        for path in self.folder.glob(RECORDINGS):
+            try:
+                if time.time() - path.stat().st_mtime > ABANDONED_S:
+                    project.create(self._new_path(), Contents(read_take(path))).close()
+                    path.unlink()
+            except (EngineError, OSError) as error:
+                log.info("%s is not offered: %s", path.name, error)
 
     def _sweep(self) -> None:
         """Remove what a killed program was making: it never became a project."""
-        for path in self._folder.glob(".*.part"):
+        for path in self.folder.glob(".*.part"):
             try:
                 if time.time() - path.stat().st_mtime > STALE_S:
                     path.unlink()

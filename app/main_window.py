@@ -101,7 +101,7 @@ class MainWindow(QMainWindow):
         self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
         self.smoothing = SmoothSection(self.session)
         self.spans = SpansSection(self.session, self.filling)
-        self.live = LiveSection(self.session)
+        self.live = LiveSection(self.session, self.keeper.folder)
         self.attached = MediaSection(self.session)
         self.notes = NotesSection(self.session)
         self.retarget = RetargetActions(self.session, self)
@@ -201,6 +201,7 @@ class MainWindow(QMainWindow):
         self.smoothing.kept.connect(self.edits.smooth)
         self.smoothing.dropped.connect(self.inference.cancel)
         self.edits.cutoff_hz = self.smoothing.cutoff.value
+        self.edits.let_go = self.timeline.visemes.drop
         self.edits.told.connect(self.status["notice"].setText)
         self.time.looping = self.actions_by_name["loop"].isChecked
         self.live.face.connect(self.preview.show_live)
@@ -209,8 +210,9 @@ class MainWindow(QMainWindow):
         self.retarget.shown.connect(self.preview.show_sides)
         self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
         self.preview.picked.connect(self.retarget.pick)
-        self.preview.dot_clicked.connect(self.retarget.retargeting.choose)
+        self.preview.dot_clicked.connect(self.retarget.placing.choose)
         self.edits.stop_else = self.retarget.retargeting.cancel
+        self.files.capture_dropped.connect(self.retarget.take_in)
         self.files.character_chosen.connect(self.preview.show_character)
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
@@ -304,7 +306,7 @@ class MainWindow(QMainWindow):
         self.filling.close()
         self.flagging.close()
         self.visemes.close()
-        self.live.stop()
+        self.live.shut_down()
         self.retarget.retargeting.close()
         self.preview.close_renderer()
         self.preferences.close()

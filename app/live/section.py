@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections import deque
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,14 +12,16 @@ from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox
 
 from app.section import Section, quiet, slider
-from app.session import Session
+from app.session import Change, Session
 from engine.errors import EngineError
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
     from engine.live.record import Recorder
+    from engine.live.spool import Spool
+    from engine.take import Take
 
-STATUS_MS = 320
+STATUS_MS = 400
 SWITCH_S = 1e-4  # for which a thread may keep another waiting; Python's own 5 ms would be felt in each packet
 SHOWN = 300  # pictures whose delay the meter tells
 # Heard from other machines only when asked for: a face is personal, and a socket is a door.
@@ -31,6 +34,7 @@ class LiveSection(Section):
     Parameters
     ----------
     session : the take beside which one listens; it is not touched until a recording is opened
+    folder : where a recording grows while it is made, so that a crash does not lose it
     """
 
     tools = frozenset({"live"})
@@ -39,8 +43,12 @@ class LiveSection(Section):
     failed = Signal(str, str)
     _cleaned = Signal()  # from the listener's thread
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, folder: Path) -> None:
         super().__init__(session, "Live")
+        self._folder = folder
+        self._spool: Spool | None = None
+        self._waiting: tuple[Take, Spool | None] | None = None  # a recording that is not open yet
+        session.changed.connect(self._on_change)
         self._listener: Listener | None = None
         self._recorder: Recorder | None = None
         self._shown_ms: deque[float] = deque(maxlen=SHOWN)
@@ -115,6 +123,14 @@ class LiveSection(Section):
             self.face.emit(None, 0.0)
         self._show_buttons()
 
+    def shut_down(self) -> None:
+        """Stop for good; a recording under way stays on disk and is offered at the next start."""
+        if self._recorder is not None:
+            self._save(all_rows=True)
+            self._close_spool(remove=False)
+            self._recorder = None
+        self.stop()
+
     def toggle_recording(self) -> None:
         """Begin to record, or end and open what was recorded."""
         if self._listener is None:
@@ -123,15 +139,55 @@ class LiveSection(Section):
             from engine.live.record import Recorder
 
             self._recorder = Recorder()
+            self._begin_spool(self._recorder)
             self._listener.stream.on_arrival = self._recorder.add
         else:
             recorder, self._recorder = self._recorder, None
             self._listener.stream.on_arrival = None
-            try:
-                self.recorded.emit(recorder.take("live"))
-            except EngineError as error:
-                self.failed.emit(error.sentence, error.advice)
+            self._end(recorder)
         self._show_buttons()
+
+    def _begin_spool(self, recorder: Recorder) -> None:
+        from engine.live.spool import Spool
+
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            self._spool = Spool(recorder, self._folder / "live.csv")
+        except (EngineError, OSError) as error:  # it goes on in memory
+            self.failed.emit(f"A crash would lose this recording: {error}", "")
+
+    def _end(self, recorder: Recorder) -> None:
+        try:
+            take = recorder.take("live")
+        except EngineError as error:
+            self.failed.emit(error.sentence, error.advice)
+            self._close_spool(remove=True)
+            return
+        self._save(all_rows=True)
+        self._waiting = (take, self._spool)
+        self._close_spool(remove=False)
+        self.recorded.emit(take)
+        if self._waiting is not None:
+            self.failed.emit("The recording waits until your edits are safe.", "Else it is offered at the next start.")
+
+    def _on_change(self, change: Change) -> None:
+        if self._waiting is not None and change & Change.TAKE and self.session.take is self._waiting[0]:
+            spool, self._waiting = self._waiting[1], None
+            if spool is not None:
+                spool.close(remove=True)
+
+    def _close_spool(self, *, remove: bool) -> None:
+        if self._spool is not None:
+            self._spool.close(remove=remove)
+            self._spool = None
+
+    def _save(self, *, all_rows: bool = False) -> None:
+        if self._spool is None or self._spool.failed:
+            return
+        try:
+            self._spool.save(all_rows=all_rows)
+        except EngineError as error:
+            self.failed.emit(error.sentence, error.advice)
 
     def on_screen(self, spent_ms: float) -> None:
         """Take note of how long a packet took until its picture was shown."""
@@ -145,6 +201,7 @@ class LiveSection(Section):
     def _show_status(self) -> None:
         if self._listener is None:
             return
+        self._save()
         status = self._listener.status()
         if self.subjects.count() != len(status.subjects):
             self.subjects.clear()

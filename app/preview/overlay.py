@@ -10,11 +10,12 @@ from PySide6.QtGui import QColor, QPainter, QPen
 
 from app.preview.camera import Camera
 from app.preview.picking import View, facing, places, views
-from app.sides import Side
+from app.sides import Dot, Side
 from app.theme import GRID
 from engine.take import Array, Mask
 
 DOT_PX, CHOSEN_PX, REACH_PX = 2.5, 5.0, 9.0
+NUMBER_PX, NAME_PX = 9, 12
 TEXT, DOT, CHOSEN, DARK = QColor("#e3e6eb"), QColor("#56B4E9"), QColor("#F0E442"), QColor("#14161a")
 
 
@@ -79,9 +80,18 @@ class Overlay:
             painter.setBrush(CHOSEN if dot.chosen else DOT)
             painter.drawEllipse(QPointF(x, y), size, size)
             if dot.number or dot.chosen:
-                text = f"{dot.number} {dot.name}".strip() if dot.chosen else dot.number
-                _write(painter, QPointF(x + size + 2, y - size), text)
+                self._name(painter, view, dot, QPointF(x, y))
         painter.restore()
+
+    def _name(self, painter: QPainter, view: View, dot: Dot, at: QPointF) -> None:
+        """Write a dot's number, the chosen one's name as well, on the side of it where there is room."""
+        font = painter.font()
+        font.setPixelSize(NAME_PX if dot.chosen else NUMBER_PX)
+        painter.setFont(font)
+        text = f"{dot.number} {dot.name}".strip() if dot.chosen else dot.number
+        width, away = painter.fontMetrics().horizontalAdvance(text), (CHOSEN_PX if dot.chosen else DOT_PX) + 2
+        left = at.x() + away + width > view.left + view.width
+        _write(painter, at + QPointF(-away - width if left else away, -away + 1), text)
 
 
 def _write(painter: QPainter, at: QPointF, text: str) -> None:

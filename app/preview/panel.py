@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QSizePolicy,
+    QSplitter,
     QToolButton,
     QVBoxLayout,
     QWidget,
@@ -35,6 +36,7 @@ from engine.take import Array
 VIEWS = ("Before", "After", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
+WIDE = 0.6  # of what preview and curves share, for two heads
 CLICK_PX = 4  # a press that moves no further is a click
 STRIP_PX = (70, 88)  # one face of a strip
 STRIP_CAMERA = Camera(zoom=1.5, pan=(0.0, -0.07))
@@ -163,6 +165,7 @@ class PreviewPanel(QFrame):
         self._character: Character | None = None
         self._live: Array | None = None
         self._sides: tuple[Side, ...] = ()
+        self._narrow: list[int] = []  # what the panels' widths were before there were two heads
         self.face = Face()
         self._frame_label = QLabel()
         self._frame_label.setProperty("quiet", True)
@@ -255,6 +258,7 @@ class PreviewPanel(QFrame):
     def show_live(self, weights: Array | None, arrived_s: float = 0.0) -> None:
         """Show a live face, (52,) weights, in place of the take's; None goes back to the take."""
         self._live = weights
+        self._show_frame()
         self.refresh(since=arrived_s)
 
     def show_sides(self, sides: tuple[Side, ...]) -> None:
@@ -262,13 +266,26 @@ class PreviewPanel(QFrame):
         self._sides = sides
         for button in self._views.buttons():
             button.setEnabled(not sides)
+        self._widen(wide=len(sides) > 1)
         self.refresh()
+
+    def _widen(self, *, wide: bool) -> None:
+        """Make room for two heads, and give it back after."""
+        split = self.parentWidget()
+        if not isinstance(split, QSplitter) or wide == bool(self._narrow):
+            return
+        sizes, self._narrow = (self._narrow, []) if not wide else (split.sizes(), split.sizes())
+        whole = sum(sizes)
+        split.setSizes([round(WIDE * whole), round((1 - WIDE) * whole)] if wide else sizes)
 
     def draw_strip(self, faces: list[Array]) -> None:
         """Draw faces, (52,) weights each, small and side by side; `strip_drawn` brings the picture."""
         if not self._off and faces:
             size = (STRIP_PX[0] * len(faces), STRIP_PX[1])
             self.drawing.submit(Wanted(Shot(tuple(faces), STRIP_CAMERA, size), self._character, strip=True), "strip")
+
+    def _show_frame(self) -> None:
+        self._frame_label.setText("live" if self._live is not None else f"frame {self._session.playhead:,}")
 
     def _shot(self) -> Shot:
         session, view = self._session, self.face.view
@@ -333,7 +350,7 @@ class PreviewPanel(QFrame):
             self._character = self._session.character
         if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.CHARACTER):
             session = self._session
-            self._frame_label.setText(f"frame {session.playhead:,}")
+            self._show_frame()
             drafted = change & Change.DRAFT and session.draft is not None
             self.refresh(since=self._inference.since if drafted else 0.0)
 

@@ -8,7 +8,9 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
+from app.retarget.labelling import Labelling
 from app.retarget.places import PlacesSection
+from app.retarget.placing import Placing
 from app.retarget.retargeting import Retargeting
 from app.retarget.section import RetargetSection
 from app.retarget.sides import sides
@@ -31,7 +33,8 @@ class RetargetActions(QObject):
 
     Attributes
     ----------
-    retargeting, panel, places : what is carried, and the sections that show it
+    retargeting, labelling, placing : what is carried, its labels and its markers
+    panel, places : the sections that show it
     """
 
     shown = Signal(object)  # sides, for the preview
@@ -41,7 +44,9 @@ class RetargetActions(QObject):
         super().__init__()
         self._session, self._window = session, window
         self.retargeting = Retargeting(session)
-        self.panel, self.places = RetargetSection(session, self.retargeting), PlacesSection(session, self.retargeting)
+        self.labelling, self.placing = Labelling(session, self.retargeting), Placing(self.retargeting)
+        self.panel = RetargetSection(session, self.retargeting, self.labelling)
+        self.places = PlacesSection(session, self.retargeting, self.placing)
         self.retargeting.failed.connect(self.failed)
         for signal in (self.retargeting.changed, self.retargeting.drawn):
             signal.connect(self._show)
@@ -75,10 +80,17 @@ class RetargetActions(QObject):
 
     def pick(self, side: int, vertex: int) -> None:
         """Place the chosen marker on the vertex that was clicked."""
-        self.retargeting.place(vertex)
+        self.placing.place(vertex)
+
+    def take_in(self, path: Path) -> None:
+        """Carry a capture that was dropped on the window."""
+        self.retarget_tool()
+        self.retargeting.open_markers(path)
 
     def _show(self) -> None:
-        self.shown.emit(sides(self._session, self.retargeting, dots=self.places.show_dots.isChecked()))
+        self.shown.emit(
+            sides(self._session, self.retargeting, self.placing.chosen, dots=self.places.show_dots.isChecked())
+        )
 
     # --- the actions
 
@@ -125,21 +137,19 @@ class RetargetActions(QObject):
 
     def suggest_labels(self) -> None:
         """Say which frames are worth a label."""
-        self.retargeting.suggest(SUGGESTED)
+        self.labelling.suggest(SUGGESTED)
 
     def label_frame(self) -> None:
         """Keep the target's pose at the playhead as a label."""
-        if not self.retargeting.ready:
-            self.failed.emit("There is no target to label.", "Choose a target in the Retarget panel.")
-        self.retargeting.label()
+        self._try(self.labelling.label)
 
     def unlabel_frame(self) -> None:
         """Remove the label at the playhead."""
-        self.retargeting.unlabel()
+        self.labelling.unlabel()
 
     def go_to_loosest(self) -> None:
         """Go to the frame that the labels tell least of."""
-        frame = self.retargeting.loosest
+        frame = self.labelling.loosest
         if frame is None:
             self.failed.emit("Nothing was solved from labels yet.", "Label some frames and solve; then it can be told.")
         else:
@@ -147,27 +157,27 @@ class RetargetActions(QObject):
 
     def save_labels(self) -> None:
         """Choose a file and write the labels."""
-        self._to_file("Save the labels", "labels.json", "Labels (*.json)", self.retargeting.write_labels)
+        self._to_file("Save the labels", "labels.json", "Labels (*.json)", self.labelling.write)
 
     def read_labels(self) -> None:
         """Choose a file of labels."""
-        self._with_file("Labels", "Labels (*.json)", self.retargeting.read_labels)
+        self._with_file("Labels", "Labels (*.json)", self.labelling.read)
 
     def place_rest(self) -> None:
         """Let the other markers follow those that were placed by hand."""
-        self.retargeting.place_rest()
+        self.placing.place_rest()
 
     def unplace_marker(self) -> None:
         """Take the chosen marker off the target."""
-        self.retargeting.unplace()
+        self.placing.unplace()
 
     def save_places(self) -> None:
         """Choose a landmark file and write where the markers are."""
-        self._to_file("Save the landmarks", "landmarks.csv", "Landmarks (*.csv)", self.retargeting.write_places)
+        self._to_file("Save the landmarks", "landmarks.csv", "Landmarks (*.csv)", self.placing.write)
 
     def read_places(self) -> None:
         """Choose a landmark file that says where the markers are."""
-        self._with_file("Landmarks", "Landmarks (*.csv)", self.retargeting.read_places)
+        self._with_file("Landmarks", "Landmarks (*.csv)", self.placing.read)
 
     # --- within
 
@@ -175,15 +185,15 @@ class RetargetActions(QObject):
         self.retarget_tool()
         name, _ = QFileDialog.getOpenFileName(self._window, title, "", kinds)
         if name:
-            self._try(use, Path(name))
+            self._try(lambda: use(Path(name)))
 
     def _to_file(self, title: str, name: str, kinds: str, use: Callable[[Path], None]) -> None:
         name, _ = QFileDialog.getSaveFileName(self._window, title, str(Path.home() / name), kinds)
         if name:
-            self._try(use, Path(name))
+            self._try(lambda: use(Path(name)))
 
-    def _try(self, use: Callable[[Path], None], path: Path) -> None:
+    def _try(self, do: Callable[[], None]) -> None:
         try:
-            use(path)
+            do()
         except EngineError as error:
             self.failed.emit(error.sentence, error.advice)

@@ -157,7 +157,7 @@ def posed(weights: Array, pose: Pose) -> Array:
 
 def opened(path: Path | None) -> Target:
     """Return a head with its 54 markers placed; with none where it lacks the landmarks for them."""
-    head = bundled() if path is None else character_of(path)
+    head = bundled() if path is None else replace(character_of(path), name=path.stem)
     try:
         layout = standard(head)
     except EditError:

@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
 
 from PySide6.QtGui import QUndoCommand
 
-from app.commands import EditCommand
 from app.retarget.carry import Target
-from app.session import Session
-from engine.character import Character
-
-if TYPE_CHECKING:
-    from engine.editing import Patch
 
 
 class TargetCommand(QUndoCommand):
@@ -37,29 +30,3 @@ class TargetCommand(QUndoCommand):
     def undo(self) -> None:
         """Take it back."""
         self._put(self._before)
-
-
-class KeepCommand(EditCommand):
-    """Puts what was carried in place, and the take on the head that it was carried to.
-
-    Parameters
-    ----------
-    session, patch, title, inputs : as for any edit
-    head : the head; None for the bundled one
-    """
-
-    def __init__(
-        self, session: Session, patch: Patch, title: str, head: Character | None, inputs: Mapping[str, Any]
-    ) -> None:
-        super().__init__(session, patch, title, kind="retarget", inputs=inputs)
-        self._heads = (session.character, head)
-
-    def redo(self) -> None:
-        """Do it, first or again."""
-        super().redo()
-        self._session.play_on(self._heads[1])
-
-    def undo(self) -> None:
-        """Take it back."""
-        super().undo()
-        self._session.play_on(self._heads[0])

@@ -6,6 +6,7 @@ from PySide6.QtCore import QSignalBlocker
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QCheckBox, QListWidget, QListWidgetItem, QPushButton
 
+from app.retarget.placing import Placing
 from app.retarget.retargeting import Retargeting
 from app.section import Section, quiet
 from app.session import Session
@@ -19,7 +20,7 @@ class PlacesSection(Section):
     Parameters
     ----------
     session : whose tool is at work
-    retargeting : keeps the places
+    retargeting, placing : keep the places, and change them
 
     Attributes
     ----------
@@ -30,9 +31,9 @@ class PlacesSection(Section):
 
     tools = frozenset({"retarget"})
 
-    def __init__(self, session: Session, retargeting: Retargeting) -> None:
+    def __init__(self, session: Session, retargeting: Retargeting, placing: Placing) -> None:
         super().__init__(session, "Markers")
-        self._retargeting = retargeting
+        self._retargeting, self._placing = retargeting, placing
         self.show_dots = QCheckBox("Show and place")
         self.show_dots.setToolTip("Draw the markers on both heads, and place them by clicking the target")
         self.column.addWidget(self.show_dots)
@@ -77,9 +78,9 @@ class PlacesSection(Section):
                 item = self.list.item(row)
                 item.setText(f"{row + 1}  {name}" + (f"  · {state}" if state else ""))
                 item.setForeground(QColor("#E69F00") if state == "not placed" else self.palette().text().color())
-            chosen = self._retargeting.chosen
+            chosen = self._placing.chosen
             self.list.setCurrentRow(names.index(chosen) if chosen in names else -1)
 
     def _choose(self, item: QListWidgetItem | None) -> None:
         if item is not None:
-            self._retargeting.choose(item.data(0x100))
+            self._placing.choose(item.data(0x100))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +11,7 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
+from app.commands import EditCommand
 from app.retarget.carry import (
     Carried,
     Carrier,
@@ -19,15 +20,12 @@ from app.retarget.carry import (
     Stopped,
     Target,
     opened,
-    points_of,
     posed,
-    with_place,
 )
-from app.retarget.commands import KeepCommand, TargetCommand
+from app.retarget.commands import TargetCommand
 from app.session import Change, Session
-from engine.character import bundled
-from engine.formats import labels as label_files
-from engine.formats import markers, markers_layout
+from engine.character import Character, bundled
+from engine.formats import markers
 from engine.spacetime.layout import MARKERS
 from engine.spacetime.retarget import Matching
 from engine.spacetime.source import Source, from_markers
@@ -39,6 +37,7 @@ if TYPE_CHECKING:
 LIVE_FRAMES = 12  # on either side of the playhead
 AHEAD_FRAMES = 6  # how near the end of what is known the playhead may come before more is asked for
 MOVEMENT, LABELS = "movement", "labels"
+KIND = "retarget"  # of the edits that put a take on another head
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +64,6 @@ class Retargeting(QObject):
     result : the whole take as the target plays it, until it is kept or dropped
     share : how far the solve is, 0..1; None while nothing is solved
     opening : the name of the file that is being opened, or nothing
-    chosen : the marker that the next click on the target places
     suggestions : frames that are worth a label, best first
     draft_pose : weights of the target that were moved at the playhead
     """
@@ -84,7 +82,7 @@ class Retargeting(QObject):
         self.result: Carried | None = None
         self.live: Carried | None = None
         self.share: float | None = None
-        self.opening, self.chosen = "", ""
+        self.opening = ""
         self.draft_pose: dict[str, float] = {}
         self.suggestions: list[int] = []
         self._capture_path: Path | None = None
@@ -98,7 +96,9 @@ class Retargeting(QObject):
             thread.done.connect(self._deliver)
             thread.failed.connect(self._refused)
         self.progress.connect(self._advance)
+        self._heads: dict[str, Character | None] = {"": None}  # by path; the bundled one has none
         session.changed.connect(self._on_change)
+        session.undo.indexChanged.connect(self._follow)
 
     # --- what there is
 
@@ -148,13 +148,6 @@ class Retargeting(QObject):
         posing = self.draft_pose if frame == self._session.playhead else {}
         return {**self.target.labels.get(frame, {}), **posing}
 
-    @property
-    def loosest(self) -> int | None:
-        """The frame that the labels hold most loosely: the one to label next."""
-        if self.result is None or self.result.uncertainty is None:
-            return None
-        return int(np.argmax(self.result.uncertainty))
-
     # --- source and target
 
     def open_markers(self, path: Path, neutral_frame: int = 0) -> None:
@@ -178,8 +171,12 @@ class Retargeting(QObject):
     def _open(self, name: str, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
         self.cancel()
         self.opening = name
-        self._whole.submit(Errand(work, then))
+        self.submit(work, then)
         self.changed.emit()
+
+    def submit(self, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
+        """Have work done off the GUI thread; `then` gets what it returns, and errors go to `failed`."""
+        self._whole.submit(Errand(work, then))
 
     def _take_capture(self, capture: Source, path: Path) -> None:
         self.opening = ""
@@ -194,112 +191,20 @@ class Retargeting(QObject):
 
     def change_target(self, target: Target, title: str) -> None:
         """Put another target in place, or another state of it, as one undo step."""
-        self._session.undo.push(TargetCommand(self._put, self.target, target, title))
+        undo = self._session.undo
+        clean = undo.isClean()
+        undo.push(TargetCommand(self._put, self.target, target, title))
+        if clean:
+            undo.setClean()  # nothing of the take has changed
 
     def _put(self, target: Target) -> None:
         self.target, self.opening = target, ""
-        if self.chosen not in self.names:
-            self.chosen = ""
         self._begin_anew()
 
-    # --- markers on the target
-
-    def choose(self, name: str) -> None:
-        """Let the next click on the target place a marker."""
-        self.chosen = name if name in self.names else ""
-        self.changed.emit()
-
-    def place(self, vertex: int) -> None:
-        """Put the chosen marker on a vertex, and choose the next that has no place yet."""
-        name = self.chosen
-        if self.target.head is None or not name:
-            return
-        new = name not in self.target.places
-        self.change_target(with_place(self.target, name, vertex), f"place {name}")
-        if new:
-            self.choose(next((each for each in self.names if each not in self.target.places), name))
-
-    def unplace(self) -> None:
-        """Take the chosen marker off the target."""
-        if self.chosen in self.target.places:
-            self.change_target(with_place(self.target, self.chosen, None), f"remove {self.chosen}")
-
-    def place_rest(self) -> None:
-        """Let the markers that were not placed by hand follow those that were."""
-        from engine.formats.characters.placing import place_rest
-
-        performance, target, head = self.performance, self.target, self.target.head
-        if head is None:
-            return
-
-        def work() -> Target:
-            source = self._carrier.source(performance)
-            given = {name: target.places[name] for name in source.names if name in target.by_hand}
-            return replace(target, places=place_rest(source.neutral, source.names, head, given))
-
-        self._whole.submit(Errand(work, lambda placed: self.change_target(placed, "place the other markers")))
-
-    def read_places(self, path: Path) -> None:
-        """Read where the markers are from a landmark file; raises `EngineError`."""
-        if self.target.head is not None:
-            places = markers_layout.read(path, vertices=len(self.target.head.neutral))
-            self.change_target(replace(self.target, places=places, by_hand=frozenset(places)), f"read {path.name}")
-
-    def write_places(self, path: Path) -> None:
-        """Write where the markers are to a landmark file; raises `EngineError`."""
-        markers_layout.write(self.target.places, path)
-
-    # --- labels
-
-    def pose(self, name: str, value: float) -> None:
-        """Move a weight of the target at the playhead."""
-        self.draft_pose[name] = value
-        self.drawn.emit()
-
-    def label(self) -> None:
-        """Keep the target's pose at the playhead as a label."""
-        face = self.face_at(self._session.playhead)
-        if face is not None:
-            frame, self.draft_pose = self._session.playhead, {}
-            pose = dict(zip(SHAPES, face.tolist(), strict=True))
-            self._relabel({**self.target.labels, frame: pose}, f"label frame {frame}")
-
-    def unlabel(self) -> None:
-        """Remove the label at the playhead."""
-        frame, self.draft_pose = self._session.playhead, {}
-        if frame in self.target.labels:
-            rest = {each: pose for each, pose in self.target.labels.items() if each != frame}
-            self._relabel(rest, f"remove the label of frame {frame}")
-
-    def _relabel(self, poses: Mapping[int, Mapping[str, float]], title: str) -> None:
-        result = self.result
-        self.change_target(replace(self.target, labels=poses), title)
-        self.result = result  # it is what the next label is posed from
-        self.changed.emit()
-
-    def suggest(self, count: int) -> None:
-        """Find frames to label next: those that bring the others nearest to a labelled one."""
-        performance, labelled = self.performance, sorted(self.target.labels)
-
-        def work() -> list[int]:
-            from engine.manifold.retarget import suggest_frames
-
-            return suggest_frames(points_of(performance), count, labelled=labelled)
-
-        self._whole.submit(Errand(work, self._take_suggestions))
-
-    def _take_suggestions(self, frames: list[int]) -> None:
+    def propose(self, frames: list[int]) -> None:
+        """Show frames that are worth a label."""
         self.suggestions = frames
         self.changed.emit()
-
-    def read_labels(self, path: Path) -> None:
-        """Read labels; raises `EngineError`."""
-        stored = label_files.read(path)
-        self._relabel(stored.labels, f"read {path.name}")
-
-    def write_labels(self, path: Path) -> None:
-        """Write labels; raises `EngineError`."""
-        label_files.write(label_files.LabelFile(self.target.labels, self.target.path), path)
 
     # --- carrying
 
@@ -341,7 +246,7 @@ class Retargeting(QObject):
         self.cancel()
         wish = Carry(self.performance, self.target, self.matching, from_labels=self.method == LABELS)
         self._solving, self.share = wish, 0.0
-        self._whole.submit(Errand(lambda: self._stoppable(wish), lambda made: self._finish(wish, made)))
+        self.submit(lambda: self._stoppable(wish), lambda made: self._finish(wish, made))
         self.changed.emit()
 
     def _stoppable(self, wish: Carry) -> Carried | None:
@@ -393,10 +298,15 @@ class Retargeting(QObject):
 
         def then(patch: Patch) -> None:
             if session.take is take:
-                played_on = None if head is bundled() else head
-                session.undo.push(KeepCommand(session, patch, f"carry to {head.name}", played_on, inputs))
+                self._heads[str(target.path or "")] = None if head is bundled() else head
+                session.undo.push(EditCommand(session, patch, f"carry to {head.name}", kind=KIND, inputs=inputs))
 
-        self._whole.submit(Errand(work, then))
+        self.submit(work, then)
+
+    def show(self, result: Carried | None) -> None:
+        """Show what was carried before, or nothing."""
+        self.result = result
+        self.changed.emit()
 
     def drop(self) -> None:
         """Keep nothing of what was carried."""
@@ -407,6 +317,7 @@ class Retargeting(QObject):
 
     def close(self) -> None:
         """Stop what is under way and end the threads."""
+        self._session.undo.indexChanged.disconnect(self._follow)  # clearing itself at its end, it would still tell us
         self.cancel()
         self._whole.stop()
         self._short.stop()
@@ -419,6 +330,24 @@ class Retargeting(QObject):
         self.result, self.draft_pose = None, {}
         self.ask_live()
         self.changed.emit()
+
+    def _follow(self, *_: int) -> None:
+        """Put the take on the head of the last retarget in effect: undone, redone or opened with a project."""
+        session = self._session
+        if session.signalsBlocked():
+            return  # a project is being opened; it says so when it is
+        contents = session.contents()
+        kept = [edit for edit in contents.edits[: contents.position] if edit.kind == KIND]
+        name = str(kept[-1].inputs.get("target", "")) if kept else ""
+        if name not in self._heads:
+            self._heads[name] = None  # where it cannot be read, once is enough
+            self.submit(lambda: opened(Path(name)), lambda target: self._found(name, target))
+        elif self._heads[name] is not session.character:
+            session.play_on(self._heads[name])
+
+    def _found(self, name: str, target: Target) -> None:
+        self._heads[name] = target.head
+        self._follow()
 
     def _deliver(self, errand: Errand, result: Any) -> None:
         errand.then(result)
@@ -433,6 +362,7 @@ class Retargeting(QObject):
             if self.capture is not None and self._session.take is not self.capture.take:
                 self.capture, self._capture_path = None, None
             self.target, self.suggestions = replace(self.target, labels={}), []
+            self._follow()
         if change & (Change.TAKE | Change.CURVES | Change.CHARACTER):
             self._performance, self.live, self._live_for = None, None, ()
             self._begin_anew()

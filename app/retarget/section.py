@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QProgressBar, QPushButton, QSpinBox, QWidget
 
+from app.retarget.labelling import Labelling
 from app.retarget.labels import LabelsBox
 from app.retarget.retargeting import LABELS, MOVEMENT, Retargeting
 from app.retarget.strengths import StrengthSliders
@@ -20,7 +21,7 @@ class RetargetSection(Section):
     Parameters
     ----------
     session : whose take is carried
-    retargeting : carries it
+    retargeting, labelling : carry it, and know the labels
 
     Attributes
     ----------
@@ -30,7 +31,7 @@ class RetargetSection(Section):
 
     tools = frozenset({"retarget"})
 
-    def __init__(self, session: Session, retargeting: Retargeting) -> None:
+    def __init__(self, session: Session, retargeting: Retargeting, labelling: Labelling) -> None:
         super().__init__(session, "Retarget")
         self._retargeting = retargeting
         self._source, self._target = quiet(""), quiet("")
@@ -63,9 +64,10 @@ class RetargetSection(Section):
         self.strengths = StrengthSliders()
         self.strengths.changed.connect(lambda matching: retargeting.use(matching=matching))
         self.column.addWidget(self.strengths)
-        self.labels = LabelsBox(session, retargeting)
+        self.labels = LabelsBox(session, retargeting, labelling)
         self.column.addWidget(self.labels)
         self._lay_out_solve()
+        self.column.addWidget(self.labels.weights)
         retargeting.changed.connect(self.show_all)
         retargeting.drawn.connect(self._show_pose)
         retargeting.progress.connect(self._show_share)
@@ -101,7 +103,7 @@ class RetargetSection(Section):
         with QSignalBlocker(self.rest_frame):
             self.rest_frame.setMaximum(max(0, len(self.session.take) - 1))
         self.strengths.setVisible(state.ready and not labels)
-        for part in (self.labels, self.save_button, self.read_button):
+        for part in (self.labels, self.labels.weights, self.save_button, self.read_button):
             part.setVisible(state.ready and labels)
         self.method.setVisible(state.ready)
         solving = state.share is not None

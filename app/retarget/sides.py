@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from app.retarget.carry import Target
-from app.retarget.retargeting import Retargeting
+from app.retarget.retargeting import LABELS, Retargeting
 from app.session import Session
 from app.sides import Dot, Side
 from engine.character import Character, bundled
@@ -19,12 +19,15 @@ from engine.take import Array
 MARGIN = 0.25  # of a capture's extent, around it
 
 
-def sides(session: Session, retargeting: Retargeting, *, dots: bool) -> tuple[Side, ...]:
-    """Return what stands side by side now; nothing where the take itself is to be seen."""
+def sides(session: Session, retargeting: Retargeting, chosen: str, *, dots: bool) -> tuple[Side, ...]:
+    """Return what stands side by side now; nothing where the take itself is to be seen.
+
+    `chosen` is the marker that a click on the target places; `dots` are drawn on heads where they are asked for.
+    """
     target, head = retargeting.target, retargeting.target.head
     if session.tool != "retarget" or (head is not None and not retargeting.ready):
         return ()
-    frame, chosen = session.playhead, retargeting.chosen
+    frame = session.playhead
     capture = retargeting.capture
     if capture is not None:
         left = _of_capture(capture, frame, chosen if dots else "")
@@ -32,7 +35,8 @@ def sides(session: Session, retargeting: Retargeting, *, dots: bool) -> tuple[Si
         left = _of_take(session, retargeting.performance.head, chosen, dots=dots)
     if head is None:
         return left, Side("no head chosen yet", None, box=_box(bundled().neutral.astype(np.float64)))
-    state = "solved" if retargeting.result is not None else "live"
+    by_name = retargeting.method == LABELS and capture is None
+    state = "solved" if retargeting.result is not None else "weights by name" if by_name else "live"
     on_target = _on_head(target, retargeting.names, chosen) if dots else ()
     right = Side(f"{head.name} · {state}", retargeting.face_at(frame), head, on_target, pickable=dots and bool(chosen))
     return left, right

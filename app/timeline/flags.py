@@ -77,8 +77,10 @@ class FlagLane:
             return []
         per_frame = box.width() / max(1e-9, view[1] - view[0])
         first, last = np.searchsorted(self._starts, (view[0] - APART_PX / per_frame, view[1] + 1))
+        if first >= last:
+            return []
         cells = np.floor(self._starts[first:last] * per_frame / APART_PX).astype(np.int64)
-        begins = np.flatnonzero(np.diff(cells, prepend=-1)) if len(cells) else np.zeros(0, np.int64)
+        begins = np.flatnonzero(np.diff(cells, prepend=-1))
         marks = []
         for begin, end in zip(begins, np.append(begins[1:], len(cells)), strict=True):
             heaviest = first + begin + int(np.argmax(self._weights[first + begin : first + end]))

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import (
-    QBrush,
     QColor,
     QContextMenuEvent,
-    QHelpEvent,
     QMouseEvent,
     QPainter,
     QPaintEvent,
     QPen,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QScrollBar, QSizePolicy, QToolTip, QWidget
+from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
 
 from app.session import Change, Session
 from app.theme import GRID, Palette
 from app.timeline.flags import FLAGS_PX, FlagLane
 from app.timeline.marks import LANE_PX, draw_marks, lanes
+from app.timeline.spans import SpanLane
 from app.timeline.viseme_editing import VisemeEditing
 from app.timeline.visemes import VISEMES_PX, Place
 from app.timeline.waveform import draw_waveform
@@ -29,7 +28,6 @@ RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 76
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 SLACK_PX = 3  # a press that moves no farther is a click
 STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
-GAP_PX = 2  # spans that are nearer are drawn as one
 LAYOUT = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES  # what may bring lanes or take them away
 SHOWN = LAYOUT | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
@@ -65,7 +63,7 @@ class Timeline(QWidget):
         self._marking = self._scrubbing = False
         self._sliding: tuple[float, float] | None = None  # where the sound was taken hold of, and its beginning then
         self.in_frames = False
-        self._flags = FlagLane()
+        self._flags, self._spans = FlagLane(), SpanLane()
         self.visemes = VisemeEditing(session, self, self._viseme_place)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setMouseTracking(True)
@@ -147,9 +145,11 @@ class Timeline(QWidget):
         self._draw_ticks(painter)
         self._draw_audio(painter)
         self.visemes.draw(painter, self._colours)
-        self._draw_spans(painter, boxes["spans"])
-        self._flags.draw(painter, self._session.flags, boxes["flags"], self._session.view, self._colours)
-        draw_marks(painter, self._session.marks, boxes["flags"].bottom(), self.x_of, self._colours)
+        marks, view = self._session.marks, self._session.view
+        self._spans.draw(painter, marks.spans, boxes["spans"], view, self._colours)
+        self._flags.draw(painter, self._session.flags, boxes["flags"], view, self._colours)
+        for name in lanes(marks):
+            draw_marks(painter, marks, name, (boxes[name], view), self._colours)
         x = self.x_of(self._session.playhead)
         painter.setPen(QPen(QColor(self._colours.text), 1))
         painter.drawLine(int(x), 2, int(x), self.height())
@@ -192,29 +192,6 @@ class Timeline(QWidget):
             first_s, last_s = (frame / session.take.fps - session.offset_s("audio") for frame in session.view)
             box = QRectF(self._gutter, RULER_PX + 2, self._span_px(), AUDIO_PX - 4)
             draw_waveform(painter, session.audio, box, (first_s, last_s), self._colours.quiet)
-
-    def _draw_spans(self, painter: QPainter, lane: QRectF) -> None:
-        warning = QColor(self._colours.warning)
-        tint = QColor(warning)
-        tint.setAlphaF(0.12)
-        drawn_to = -1e9
-        for span in self._session.marks.spans:
-            left, right = self.x_of(span.start - 0.5), self.x_of(span.stop - 0.5)
-            if right < self._gutter or left > self.width() or right < drawn_to + GAP_PX:
-                continue
-            drawn_to = right
-            box = QRectF(left, lane.top() + 3, max(3.0, right - left), lane.height() - 7)
-            painter.fillRect(box, tint)
-            painter.fillRect(box, QBrush(warning, Qt.BrushStyle.BDiagPattern))
-            painter.setPen(QPen(warning, 1))
-            painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawRect(box)
-            title = "lost" if span.kind == "lost" else span.region
-            text = painter.fontMetrics().horizontalAdvance(title) + 10
-            if box.width() > text + 4:
-                label = QRectF(box.center().x() - text / 2, box.top() + 1, text, box.height() - 2)
-                painter.fillRect(label, QColor(self._colours.panel))
-                painter.drawText(label, Qt.AlignmentFlag.AlignCenter, title)
 
     # --- the mouse
 
@@ -289,13 +266,6 @@ class Timeline(QWidget):
         if self._lane_at(event.y()) == "visemes":
             self.visemes.open_menu(event.x(), event.globalPos(), self._colours)
 
-    def event(self, event: QEvent) -> bool:
-        """Tell what lies under the pointer."""
-        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
-            QToolTip.showText(event.globalPos(), self.told_at(QPointF(event.pos())), self)
-            return True
-        return super().event(event)
-
     def told_at(self, place: QPointF) -> str:
         """Return what to tell of a place in the widget."""
         lane = self._lane_at(place.y())
@@ -306,6 +276,7 @@ class Timeline(QWidget):
         return said or HINTS.get(lane, HINTS[""])
 
     def _show_pointer(self, place: QPointF) -> None:
+        self.setToolTip(self.told_at(place))
         lane = self._lane_at(place.y())
         if lane == "visemes" and self.visemes.edge_at(place.x()) is not None:
             self.setCursor(Qt.CursorShape.SplitHCursor)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
-from PySide6.QtCore import QEvent, QObject, QPoint, Qt, Signal
+from PySide6.QtCore import QObject, QPoint, Qt, Signal
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QPainter
 from PySide6.QtWidgets import QLineEdit, QMenu, QWidget
 
@@ -34,9 +34,11 @@ class Entry(QLineEdit):
     """Typed into in place: Enter gives what was typed, Escape or a click elsewhere drops it."""
 
     given = Signal(str)
+    closed = Signal()
 
     def __init__(self, parent: QWidget, text: str, hint: str) -> None:
         super().__init__(text, parent)
+        self._gone = False
         self.setToolTip(hint)
         self.setAccessibleName(hint)
         self.setMaxLength(60)
@@ -48,17 +50,12 @@ class Entry(QLineEdit):
         self.given.emit(text)
 
     def close_entry(self) -> None:
-        """Go away, and leave the keys to the lanes."""
-        self.hide()
-        self.deleteLater()
-
-    def event(self, event: QEvent) -> bool:
-        """Keep Escape from the window while something is typed."""
-        own = (Qt.Key.Key_Escape, Qt.Key.Key_Return, Qt.Key.Key_Enter)
-        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and event.key() in own:
-            event.accept()
-            return True
-        return super().event(event)
+        """Go away; being hidden it loses the focus and is told to once more."""
+        if not self._gone:
+            self._gone = True
+            self.closed.emit()
+            self.hide()
+            self.deleteLater()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Drop what is typed on Escape."""
@@ -163,10 +160,13 @@ class VisemeEditing(QObject):
             self._push(drag.before, drag.lane, "move a viseme boundary")
         self._host.update()
 
-    def drop(self) -> None:
-        """Let go of the boundary as if it had not been moved."""
-        self._drag = None
+    def drop(self) -> bool:
+        """Let go of the boundary as if it had not been moved, and of what is typed; returns whether there was any."""
+        held, self._drag = self._drag is not None or self.entry is not None, None
+        if self.entry is not None:
+            self.entry.close_entry()
         self._host.update()
+        return held
 
     # --- blocks
 
@@ -225,9 +225,13 @@ class VisemeEditing(QObject):
         left = min(max(box.left(), x), box.right() - ENTRY_PX)
         self.entry = entry = Entry(self._host, text, hint)
         entry.setGeometry(int(left), int(box.top()) - 1, ENTRY_PX, int(box.height()) + 2)
+        entry.closed.connect(self._forget_entry)
         entry.show()
         entry.setFocus()
         return entry
+
+    def _forget_entry(self) -> None:
+        self.entry = None
 
     def _say(self, lane: VisemeLane, index: int, label: str, *_: bool) -> None:
         self._push(lane, renamed(lane, index, label), f"say {label}")

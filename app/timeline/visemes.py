@@ -152,6 +152,7 @@ def _draw_name(painter: QPainter, label: str, box: QRectF, ends: tuple[float, fl
     painter.setPen(QPen(QColor(colours.panel), 1))
     painter.drawLine(QPointF(left, box.top()), QPointF(left, box.bottom()))
     painter.drawLine(QPointF(right, box.top()), QPointF(right, box.bottom()))
+    left, right = max(left, box.left()), min(right, box.right())  # the name stays in sight for as long as its block is
     for text in (label.strip(), label.strip().rstrip("012")):  # stress is the first thing to do without
         if painter.fontMetrics().horizontalAdvance(text) + ROOM_PX <= right - left:
             painter.setPen(QColor(colours.text))

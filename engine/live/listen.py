@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import select
 import socket
 import threading
@@ -22,6 +23,7 @@ QUEUE = 64  # datagrams waiting to be cleaned: half a second of the fastest phon
 FRAMES = 512  # cleaned frames waiting to be shown
 PER_S = 500.0  # datagrams a second of one sender that are read at all; a phone sends 60
 SENDERS = 8  # that have an allowance of their own
+LISTEN_TO = "Use 127.0.0.1, or 0.0.0.0 to hear the whole network."
 _POLL_S = 0.2  # how long closing may take
 _LATENCIES = 1024
 
@@ -160,11 +162,13 @@ def _open(bind: str, port: int) -> socket.socket:
         family = socket.getaddrinfo(bind, port, type=socket.SOCK_DGRAM)[0][0]
         opened = socket.socket(family, socket.SOCK_DGRAM)
     except (OSError, OverflowError, UnicodeError) as error:
-        raise EngineError(f"{bind}:{port} is no address to listen on.", "Use 127.0.0.1, or 0.0.0.0 for all.") from error
+        raise EngineError(f"{bind}:{port} is no address to listen on.", LISTEN_TO) from error
     try:
         opened.bind((bind, port))
     except (OSError, OverflowError) as error:
         opened.close()
+        if getattr(error, "errno", None) == errno.EADDRNOTAVAIL:
+            raise EngineError(f"{bind} is no address of this computer.", LISTEN_TO) from error
         reason = getattr(error, "strerror", None) or "no such port"
         raise EngineError(
             f"Port {port} on {bind} cannot be listened on: {reason.lower()}.",

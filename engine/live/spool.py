@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 from pathlib import Path
 from typing import BinaryIO
 
@@ -47,6 +48,7 @@ class Spool:
 
         Lines are written whole or not at all, so that the file opens whenever the program ends.
         """
+        os.utime(self.path)  # whoever finds the file sees that it is being written, even while no face comes
         new = self._recorder.since(self._taken)
         self._taken += len(new)
         held = np.concatenate([self._held, new])

@@ -106,10 +106,10 @@ def attached(cues: Iterable[Cue], source: str) -> VisemeLane:
     Raises `EditError` for a label that is no viseme or phone, and where no cue lasts.
     """
     found: list[Cue] = []
-    for cue in sorted(cues, key=lambda each: (each.start_s, each.stop_s)):
-        if not (np.isfinite([cue.start_s, cue.stop_s]).all() and cue.stop_s - cue.start_s > INSTANT_S):
-            continue  # a point in time says nothing of how long
-        class_of(cue.label)
+    lasting = [cue for cue in cues if INSTANT_S < cue.stop_s - cue.start_s < np.inf]  # a point says nothing of how long
+    for label in {cue.label for cue in lasting}:
+        class_of(label)
+    for cue in sorted(lasting, key=lambda each: (each.start_s, each.stop_s)):
         while found and found[-1].stop_s > cue.start_s:
             last = found.pop()
             if cue.start_s - last.start_s > INSTANT_S:

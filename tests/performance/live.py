@@ -63,6 +63,7 @@ def flood(port: int, seconds: float) -> None:
     kinds = [encode(Stamp(1), rng.random(len(SHAPES)).astype(np.float32), subject="flood"), rng.bytes(700), b""]
     with socket.socket(type=socket.SOCK_DGRAM) as out:
         out.bind(("127.0.0.2", 0))
+        time.sleep(3.0)  # the phone comes first: the first face that arrives is the one that is followed
         began = time.perf_counter()
         for index in range(round(seconds * FLOOD_PER_S)):
             time.sleep(max(0.0, began + index / FLOOD_PER_S - time.perf_counter()))
@@ -158,10 +159,10 @@ def delays_ms(log: Log, sent: Array) -> tuple[Array, Array]:
     return weights, preview
 
 
-def p95(timed: Array, start_s: float, stop_s: float) -> float:
-    """Return the 95th percentile of the second column over a stretch of time."""
+def p95(timed: Array, start_s: float, stop_s: float, percent: float = 95.0) -> float:
+    """Return the 95th or another percentile of the second column over a stretch of time."""
     inside = timed[(timed[:, 0] >= start_s) & (timed[:, 0] < stop_s), 1]
-    return float(np.percentile(inside, 95)) if len(inside) else float("nan")
+    return float(np.percentile(inside, percent)) if len(inside) else float("nan")
 
 
 def summary(log: Log, sent: Array) -> dict[str, float]:
@@ -181,6 +182,8 @@ def summary(log: Log, sent: Array) -> dict[str, float]:
     }
     for name, start in (("first", begin), ("last", end - stretch)):
         found[f"weights_ms_p95_{name}"] = p95(weights, start, start + stretch)
+        found[f"weights_ms_p50_{name}"] = p95(weights, start, start + stretch, 50.0)
+        found[f"preview_ms_p50_{name}"] = p95(preview, start, start + stretch, 50.0)
         found[f"preview_ms_p95_{name}"] = p95(preview, start, start + stretch)
         found[f"sender_late_ms_p95_{name}"] = p95(sending, start, start + stretch)
         inside = resident[(resident[:, 0] >= start) & (resident[:, 0] < start + stretch), 1]
@@ -215,7 +218,7 @@ def run(seconds: float, *, record: bool, flooded: bool) -> tuple[Log, Array, dic
         kept = watch(window, order[0][1], log)
         workers = [context.Process(target=send, args=(port, seconds, tell), daemon=True)]
         if flooded:
-            workers.append(context.Process(target=flood, args=(port, seconds + 10), daemon=True))
+            workers.append(context.Process(target=flood, args=(port, seconds), daemon=True))
         for worker in workers:
             worker.start()
         done = QTimer(interval=200)

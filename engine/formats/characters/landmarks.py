@@ -8,12 +8,19 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
+from scipy.spatial.distance import cdist
 
 from engine.character import Character, bundled
 from engine.errors import EditError
 from engine.manifold.drive import parts_of
 from engine.manifold.pose import fit_similarity
 from engine.take import SHAPES, Array
+
+MOVED_MM = 1.0
+LED_MM = 40.0  # how far a landmark placed by hand leads
+STRIP_MM = 15.0
+HEIGHTS = 12  # at which the tip of the nose is looked for
+CLOSEST = 0.8  # share of the face that has to lie on the other head
 
 
 def with_landmarks(character: Character, given: Mapping[str, int] | None = None) -> tuple[Character, dict[str, float]]:
@@ -68,34 +75,74 @@ def _fit(
     given: Mapping[str, int],
 ) -> Array:
     """Return the bundled head's vertices laid onto another head, (n, 3)."""
-    pairs = [
-        (source[head.landmarks[name]], neutral[vertex]) for name, vertex in given.items() if name in head.landmarks
-    ]
+    by_hand = [(head.landmarks[name], vertex) for name, vertex in given.items() if name in head.landmarks]
+    pairs = [(source[ours], neutral[theirs]) for ours, theirs in by_hand]
     for shape in range(len(SHAPES)):
         ours, theirs = (_centre_of_motion(v, d[shape]) for v, d in ((source, head.deltas), (neutral, deltas)))
         if ours is not None and theirs is not None:
             pairs.append((ours, theirs))
+    sample, tree = _sample(head, whole=bool(np.abs(deltas).any())), KDTree(neutral)
     if len(pairs) >= 4:
         start, end = (np.array(side) for side in zip(*pairs, strict=True))
-        placed = fit_similarity(start, end[None], mirrored=False).apply(source)[0]
+        best = fit_similarity(start, end[None], mirrored=False).apply(source)[0]
     else:
-        scale = np.ptp(neutral[:, 1]) / np.ptp(source[:, 1])
-        placed = (source - _middle(source)) * scale + _middle(neutral)
-    return _to_surface(placed, np.flatnonzero(_largest_part(head.triangles, len(source))), neutral)
+        tried = [_to_surface(laid, sample[::6], tree, rounds=5) for laid in _starts(source, head, neutral)]
+        best = min(tried, key=lambda laid: _apart(laid[sample], tree))
+    laid = _to_surface(best, sample, tree)
+    return _led(laid, np.array([ours for ours, _ in by_hand], np.int64), neutral[[theirs for _, theirs in by_hand]])
 
 
-def _to_surface(placed: Array, skin: npt.NDArray[np.int64], neutral: Array, *, rounds: int = 12) -> Array:
-    """Refine a fit by pairing each vertex of the skin with the nearest one of the other head (ICP)."""
-    tree = KDTree(neutral)
-    sample = placed[skin[:: max(1, len(skin) // 1500)]]
-    laid = placed
+def _led(laid: Array, leaders: npt.NDArray[np.int64], places: Array) -> Array:
+    """Return laid-on vertices, (n, 3), shifted as those of them that have a place by hand, the more the nearer they are."""
+    share = np.exp(-((cdist(laid, laid[leaders]) / LED_MM) ** 2))
+    share /= np.maximum(share.sum(axis=1, keepdims=True), 1.0)
+    return np.asarray(laid + share @ (places - laid[leaders]))
+
+
+def _sample(head: Character, *, whole: bool) -> npt.NDArray[np.int64]:
+    """Return about 1,500 vertices of the skin; not the whole of it, only what some shape moves.
+
+    Scalp and neck differ most from head to head, but they steady a fit that starts near its end.
+    """
+    skin = _largest_part(head.triangles, len(head.neutral))
+    moved = np.linalg.norm(head.deltas, axis=2).max(axis=0) > MOVED_MM
+    chosen = np.flatnonzero(skin if whole else skin & moved)
+    return chosen[:: max(1, len(chosen) // 1500)]
+
+
+def _starts(source: Array, head: Character, neutral: Array) -> list[Array]:
+    """Return the bundled head at places from which a fit may find its way, where nothing says where the face is.
+
+    A head is about as large as ours, in mm; its nose is the foremost place of its middle at some height.
+    """
+    nose = source[head.landmarks["nose_tip"]]
+    middle = _middle(neutral)
+    strip = neutral[np.abs(neutral[:, 0] - middle[0]) < STRIP_MM]
+    laid = []
+    for height in np.linspace(neutral[:, 1].min(), neutral[:, 1].max(), HEIGHTS):
+        near = strip[np.abs(strip[:, 1] - height) < STRIP_MM]
+        if len(near):
+            tip = np.array([middle[0], height, near[:, 2].max()])
+            laid += [tip + scale * (source - nose) for scale in (0.85, 1.0, 1.15)]
+    return laid or [source - _middle(source) + middle]
+
+
+def _apart(laid: Array, tree: KDTree) -> float:
+    """Return how far most of a laid-on face is from the other head, relative to its size."""
+    away = np.sort(tree.query(laid)[0])[: int(CLOSEST * len(laid))]
+    return float(away.mean() / np.linalg.norm(np.ptp(laid, axis=0)))
+
+
+def _to_surface(placed: Array, sample: npt.NDArray[np.int64], tree: KDTree, *, rounds: int = 12) -> Array:
+    """Refine a fit by pairing vertices of the face with the nearest ones of the other head (ICP)."""
+    start = moved = placed[sample]
     for _ in range(rounds):
-        away, found = tree.query(sample)
-        nearest = np.asarray(found, np.int64)
-        close = away <= np.percentile(away, 80)
-        motion = fit_similarity(sample[close], neutral[nearest[close]][None], mirrored=False)
-        sample, laid = motion.apply(sample)[0], motion.apply(laid)[0]
-    return laid
+        away, found = tree.query(moved)
+        close = away <= np.percentile(away, 100 * CLOSEST)
+        nearest = tree.data[np.asarray(found, np.int64)[close]]
+        moved = fit_similarity(moved[close], nearest[None], mirrored=False).apply(moved)[0]
+    led: Array = fit_similarity(start, moved[None], mirrored=False).apply(placed)[0]
+    return led
 
 
 def _middle(points: Array) -> Array:

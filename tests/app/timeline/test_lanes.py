@@ -147,7 +147,8 @@ def test_escape_drops_what_is_typed(qtbot: QtBot, timeline: Timeline) -> None:
     entry = timeline.visemes.entry
     QTest.keyClicks(entry, "T")
     QTest.keyClick(entry, Qt.Key.Key_Escape)
-    assert not entry.isVisible()
+    assert timeline.visemes.entry is None
+    assert lane_of(timeline).cues == CUES
     assert timeline._session.undo.count() == 0
 
 
@@ -251,6 +252,11 @@ def test_marks_that_would_touch_are_one_until_they_have_room(timeline: Timeline)
     session.set_view(95, 125)
     timeline.grab()
     assert [mark.flag.start for mark in timeline._flags.marks] == [100, 102]
+    session.set_view(110, 150)
+    timeline.grab()
+    assert timeline._flags.marks == []
+    session.set_view(95, 125)
+    timeline.grab()
     places = [mark.x for mark in timeline._flags.marks]
     assert min(np.diff(places)) >= APART_PX
 
