@@ -60,13 +60,14 @@ def _curves(pyplot: Any, path: Path, across: str, x: Array, curves: dict[str, Ar
 
 
 def _faces(pyplot: Any, data: Path | None, path: Path) -> Path:
-    """Draw the expression that moves most: each method's face and the truth, from the front, lit from above."""
+    """Draw the expression that moves most, from the front, lit from above: face at rest with its points, methods, truth."""
     pair = tables.heads()
     rest, target = max(tables.face_pairs(data), key=lambda faces: float(np.abs(faces[1] - faces[0]).sum()))
     made = {SHOWN[method]: move(target[pair.points]) for method, move in tables._drivers(rest).items()}
     triangles = pair.part[(pair.part < tables.FACE_VERTICES).all(axis=1)]
-    figure, axes = pyplot.subplots(1, 4, figsize=(12, 4.2), layout="constrained")
-    for axis, (title, vertices) in zip(axes, {**made, "truth": target}.items(), strict=True):
+    shown = {f"at rest, {tables.POINTS} points": rest, **made, "truth": target}
+    figure, axes = pyplot.subplots(1, len(shown), figsize=(15, 4.2), layout="constrained")
+    for axis, (title, vertices) in zip(axes, shown.items(), strict=True):
         corner = vertices[triangles]
         normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
         shade = normal @ np.array([0.2, 0.5, 0.85]) / np.maximum(np.linalg.norm(normal, axis=1), 1e-9)
@@ -77,6 +78,7 @@ def _faces(pyplot: Any, data: Path | None, path: Path) -> Path:
         )
         axis.set(title=title, aspect="equal", xlim=(-95, 95), ylim=(-125, 125))
         axis.axis("off")
+    axes[0].plot(*rest[pair.points, :2].T, ".", color="#D55E00", markersize=3)
     figure.savefig(path, dpi=150)
     pyplot.close(figure)
     return path

@@ -8,6 +8,7 @@ from engine.errors import EditError
 from engine.formats import read_take
 from engine.manifold.retarget import Retargeter, Settings, retarget_points, retarget_weights, suggest_frames
 from engine.performance import demo
+from engine.take import SHAPE_INDEX, SHAPES
 
 
 def landmarks(frames: slice) -> tuple[np.ndarray, np.ndarray]:
@@ -82,6 +83,31 @@ def test_weights_of_a_target_with_shapes() -> None:
     made = retarget_weights(take, {f: halved[f] for f in suggest_frames(take.weights, 20)})
     assert np.abs(made.weights - halved).mean() < 0.1 * np.abs(take.weights - halved).mean()
     assert len(made) == len(take) and made.fps == take.fps
+
+
+def test_two_labels_tell_the_gain_of_every_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    source, rest = landmarks(slice(40, 140))
+    target, target_rest = exaggerated(source, rest)
+    labels = {frame: target[frame] for frame in suggest_frames(source, 2)}
+
+    def error() -> float:
+        return float(np.linalg.norm(retarget_points(source, rest, target_rest, labels) - target, axis=2).mean())
+
+    with_gains = error()
+    monkeypatch.setattr("engine.manifold.retarget.GAIN_RIDGE", 1e12)
+    assert with_gains < 0.8 * error()
+
+
+def test_a_label_may_name_some_shapes_and_leaves_the_others_as_they_are() -> None:
+    take = read_take(demo.BUNDLED)
+    jaw = SHAPE_INDEX["jawOpen"]
+    frames = suggest_frames(take.weights, 8)
+    made = retarget_weights(take, {frame: {"jawOpen": 0.5 * take.weights[frame, jaw]} for frame in frames})
+    others = np.arange(len(SHAPES)) != jaw
+    np.testing.assert_allclose(made.weights[:, others], np.clip(take.weights[:, others], 0, None), atol=1e-3)
+    assert np.abs(made.weights[:, jaw] - 0.5 * take.weights[:, jaw]).mean() < 0.02
+    with pytest.raises(EditError, match="no shape called 'grin'"):
+        retarget_weights(take, {3: {"grin": 1.0}})
 
 
 @pytest.mark.parametrize(
