@@ -9,6 +9,7 @@ import numpy as np
 
 from engine.character import Character
 from engine.errors import FormatError
+from engine.formats.characters.colouring import colours_of
 from engine.formats.characters.landmarks import transfer_landmarks
 from engine.formats.characters.names import Match, match_names
 from engine.formats.characters.raw import RawCharacter
@@ -18,7 +19,6 @@ UNITS_MM = {"mm": 1.0, "cm": 10.0, "in": 25.4, "m": 1000.0}
 HEAD_MM = (150.0, 700.0)  # height of a head, from chin-to-crown alone to head and shoulders
 TYPICAL_MM = 280.0
 UP = ("y", "z")
-SKIN = (205, 165, 145)
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def assemble(
         neutral.astype(np.float32),
         raw.triangles,
         deltas,
-        np.full((len(neutral), 3), SKIN, np.uint8),
+        colours_of(neutral, raw.triangles, found),
         found,
         raw.name,
     )
