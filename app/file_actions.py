@@ -21,6 +21,7 @@ from engine.project import ENDING
 from engine.take import Take
 
 Answer = QMessageBox.StandardButton
+CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 
 
 class FileActions(QObject):
