@@ -141,7 +141,8 @@ def _to_surface(placed: Array, sample: npt.NDArray[np.int64], tree: KDTree, *, r
         close = away <= np.percentile(away, 100 * CLOSEST)
         nearest = tree.data[np.asarray(found, np.int64)[close]]
         moved = fit_similarity(moved[close], nearest[None], mirrored=False).apply(moved)[0]
-    return fit_similarity(start, moved[None], mirrored=False).apply(placed)[0]
+    led: Array = fit_similarity(start, moved[None], mirrored=False).apply(placed)[0]
+    return led
 
 
 def _middle(points: Array) -> Array:
