@@ -22,6 +22,7 @@ from engine.take import Take
 
 CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 Answer = QMessageBox.StandardButton
+CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 
 
 class FileActions(QObject):

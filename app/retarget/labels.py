@@ -58,7 +58,7 @@ class LabelsBox(QWidget):
         loosest = self._labelling.loosest
         self.loosest_button.setVisible(loosest is not None)
         if loosest is not None:
-            self.loosest_button.setText(f"Worst, as estimated: frame {loosest}")
+            self.loosest_button.setText(f"Likely worst: frame {loosest}")
             self.loosest_button.setToolTip(
                 "Where the labels tell least, and the solve is likely furthest off: label it next"
             )
@@ -86,7 +86,7 @@ class LabelsBox(QWidget):
             self._lay_out_list(listed)
         for frame, button in self.frames.items():
             state = "labelled" if frame in labelled else "to label"
-            button.setText(f"{timecode(frame / fps, fps)}  frame {frame} · {state}")
+            button.setText(f"{timecode(frame / fps, fps)}  {frame} · {state}")
 
     def _lay_out_list(self, frames: list[int]) -> None:
         while (item := self._list.takeAt(0)) is not None:

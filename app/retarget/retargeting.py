@@ -34,8 +34,8 @@ from engine.take import SHAPES, Array
 if TYPE_CHECKING:
     from engine.editing import Patch
 
-LIVE_FRAMES = 12  # on either side of the playhead
-AHEAD_FRAMES = 6  # how near the end of what is known the playhead may come before more is asked for
+BEFORE_FRAMES, AFTER_FRAMES = 8, 24  # of the playhead, that are carried live: playing goes on while more is made
+AHEAD_FRAMES = 12  # how near the end of what is known the playhead may come before more is asked for
 MOVEMENT, LABELS = "movement", "labels"
 KIND = "retarget"  # of the edits that put a take on another head
 
@@ -225,7 +225,7 @@ class Retargeting(QObject):
         inside = asked[0] <= playhead and (playhead + AHEAD_FRAMES < asked[1] or asked[1] == frames)
         if inside and playhead < asked[1]:
             return
-        span = (max(0, playhead - LIVE_FRAMES), min(frames, playhead + LIVE_FRAMES + 1))
+        span = (max(0, playhead - BEFORE_FRAMES), min(frames, playhead + AFTER_FRAMES + 1))
         self._live_for, self._live_span = wanted, span
         wish = Carry(self.performance, self.target, self.matching, span)
         self._short.submit(Errand(lambda: self._live_carrier(wish, _nobody), lambda made: self._show_live(wish, made)))

@@ -87,7 +87,9 @@ class RetargetSection(Section):
         self.side_by_side(self.keep_button, self.drop_button)
         self._facts = quiet("")
         self.column.addWidget(self._facts)
-        self.save_button, self.read_button = QPushButton("Save labels…"), QPushButton("Read labels…")
+        self.save_button, self.read_button = QPushButton("Save…"), QPushButton("Read…")
+        self.save_button.setToolTip("Write the labels to a file")
+        self.read_button.setToolTip("Read labels from a file")
         self.side_by_side(self.save_button, self.read_button)
 
     def show_all(self) -> None:
@@ -107,8 +109,11 @@ class RetargetSection(Section):
             part.setVisible(state.ready and labels)
         self.method.setVisible(state.ready)
         solving = state.share is not None
-        self.solve_button.setVisible(state.ready and not solving and state.result is None)
-        self.solve_button.setText("Solve from the labels" if labels else "Solve the whole take")
+        again = labels and state.result is not None  # a label was added where it was worst
+        self.solve_button.setVisible(state.ready and not solving and (state.result is None or labels))
+        self.solve_button.setText(
+            "Solve again" if again else "Solve from the labels" if labels else "Solve the whole take"
+        )
         self.bar.setVisible(solving)
         self.cancel_button.setVisible(solving)
         for widget in (self.keep_button, self.drop_button):

@@ -55,6 +55,11 @@ def lanes_shown(opened: MainWindow) -> None:
     opened.session.move_playhead(88)
 
 
+def retargeting(opened: MainWindow) -> None:
+    opened.retarget.retarget_tool()
+    opened.session.move_playhead(175)
+
+
 STATES: tuple[Callable[[MainWindow], None], ...] = (
     first_minute,
     weights_shown,
@@ -62,15 +67,7 @@ STATES: tuple[Callable[[MainWindow], None], ...] = (
     told_off,
     sound_missing,
     lanes_shown,
-)
-
-
-STATES: tuple[Callable[[MainWindow], None], ...] = (
-    first_minute,
-    weights_shown,
-    pinning_in_light,
-    told_off,
-    lanes_shown,
+    retargeting,
 )
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from engine.manifold.drive import parts_of
 from engine.take import Array, Mask
 
-SKIN, MOUTH, TOOTH, LASH = (205, 165, 145), (150, 75, 75), (232, 226, 212), (58, 44, 40)
+SKIN, MOUTH, TOOTH, LASH = (205, 165, 145), (150, 75, 75), (232, 226, 212), (122, 94, 82)
 WHITE, IRIS, PUPIL = (236, 234, 230), (88, 122, 138), (20, 20, 24)
 IRIS_DEG, PUPIL_DEG, SOFT_DEG = 26.0, 11.0, 8.0  # half angles about the eyeball's centre, and the width of their edges
 ROUND = 1.3  # width by height of an eyeball, or the other way round

@@ -64,6 +64,11 @@ def test_labels_are_met_and_the_least_certain_frame_is_offered_next(
     assert result.uncertainty[loosest] == result.uncertainty.max() and loosest not in target.labels
     click(labelling.panel.labels.label_button)
     assert loosest in labelling.retargeting.target.labels
+    click(labelling.panel.solve_button)
+    qtbot.waitUntil(lambda: labelling.retargeting.share is None, timeout=60_000)
+    again = labelling.retargeting.result
+    assert again is not None and again is not result and again.uncertainty is not None
+    assert again.uncertainty[loosest] < result.uncertainty[loosest]
 
     choose_file.append(tmp_path / "labels.json")
     click(labelling.panel.save_button)

@@ -203,3 +203,12 @@ def test_another_frame_at_rest_is_measured_from(
     assert retarget.retargeting.capture is not None
     np.testing.assert_allclose(retarget.retargeting.capture.displacements[1], 0, atol=0.5)
     assert retarget.panel.rest_frame.value() == 1
+
+
+def test_a_capture_that_is_dropped_on_the_window_is_carried(
+    qtbot: QtBot, retarget: RetargetActions, tmp_path: Path
+) -> None:
+    _capture(tmp_path / "capture.trc")
+    retarget.take_in(tmp_path / "capture.trc")
+    settle(qtbot, retarget)
+    assert retarget.retargeting.capture is not None and retarget._session.name == "capture.trc"

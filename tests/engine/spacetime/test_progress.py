@@ -44,7 +44,7 @@ def test_it_stops_at_the_next_word(source: Source, monkeypatch: pytest.MonkeyPat
 
 
 def test_a_short_range_looks_as_it_will_in_the_whole_take() -> None:
-    """What the window shows live, 25 frames around the playhead, is what solving the whole take brings."""
+    """What the window shows live, some frames around the playhead, is what solving the whole take brings."""
     take: Take = read_take(demo.BUNDLED)
     whole = from_take(take, bundled()).part(0, 150)
     expected = retarget(whole, bundled()).weights[63:88]
