@@ -97,7 +97,7 @@ class MainWindow(QMainWindow):
         self.time = TimeActions(self.session, self.transport, self.filling)
         self.brush, self.value = BrushSection(self.session), ValueSection(self.session)
         self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
-        self.smoothing = SmoothSection(self.session)
+        self.smoothing, self.facts = SmoothSection(self.session), FactsSection(self.session)
         self.spans = SpansSection(self.session, self.filling)
         self.live = LiveSection(self.session)
         self.notes = NotesSection(self.session)
@@ -109,7 +109,7 @@ class MainWindow(QMainWindow):
             self.live,
             self.smoothing,
             self.spans,
-            FactsSection(self.session),
+            self.facts,
             self.notes,
         )
         self.inspector = Inspector(self.session, sections)
@@ -199,6 +199,7 @@ class MainWindow(QMainWindow):
         self.transport.changed.connect(self._show_transport)
         self.value.close_here.connect(self.edits.close_here)
         self.value.typed.connect(self.edits.set_value)
+        self.facts.again.connect(self.edits.again)
         self.smoothing.moved.connect(self.edits.preview_smoothing)
         self.smoothing.kept.connect(self.edits.smooth)
         self.smoothing.dropped.connect(self.inference.cancel)
@@ -299,6 +300,8 @@ class MainWindow(QMainWindow):
     def _show_tool(self) -> None:
         for name in TOOLS:
             self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
+        self.actions_by_name["hit_exactly"].setChecked(self.session.exact)
+        self.actions_by_name["rest_follows"].setChecked(self.session.follow)
 
     def light_theme(self) -> None:
         """Switch between dark and light."""

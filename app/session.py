@@ -58,7 +58,8 @@ class Session(QObject):
     lane : the curve that is worked on, an index into CURVES
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
-    radius_frames, strength, exact : the Drag tool's brush
+    radius_frames, strength : the Drag tool's brush
+    exact, follow : whether edits hit the curve exactly, and whether controls that nobody asked for follow
     audio, audio_offset_s : the recording of the sound, and the time in the take at which it begins
     video, video_offset_s : the file of the reference video, likewise
     marks : spans, pins, notes, media and verdict
@@ -70,7 +71,7 @@ class Session(QObject):
         super().__init__()
         self.undo = QUndoStack(self)
         self.path: Path | None = None
-        self.strength, self.exact, self.tool = 1.0, False, "drag"
+        self.strength, self.exact, self.follow, self.tool = 1.0, False, True, "drag"
         self._restoring = False
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
@@ -274,7 +275,12 @@ class Session(QObject):
             self.changed.emit(Change.TOOL)
 
     def set_brush(
-        self, *, radius_frames: int | None = None, strength: float | None = None, exact: bool | None = None
+        self,
+        *,
+        radius_frames: int | None = None,
+        strength: float | None = None,
+        exact: bool | None = None,
+        follow: bool | None = None,
     ) -> None:
         """Change the Drag tool."""
         if radius_frames is not None:
@@ -283,6 +289,8 @@ class Session(QObject):
             self.strength = float(np.clip(strength, 0.0, 1.0))
         if exact is not None:
             self.exact = exact
+        if follow is not None:
+            self.follow = follow
         self.changed.emit(Change.TOOL)
 
 
