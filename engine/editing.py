@@ -12,7 +12,7 @@ import torch
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from engine import exact
-from engine.controls import CONTROLS, bundled_measurer, control_index
+from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer, control_index
 from engine.errors import EditError
 from engine.models.resample import interpolate
 from engine.regress import infer
@@ -29,6 +29,8 @@ _ONE_WAY = ("jawRight", "jawLeft", "mouthRight", "mouthLeft")  # directions of t
 RIGHT_SHAPES, LEFT_SHAPES = (
     np.array([name.endswith(side) and name not in _ONE_WAY for name in SHAPES]) for side in ("Right", "Left")
 )
+_SIDEWAYS = [CONTROL_INDEX[name] for name in ("lips_horizontal", "corner_right", "corner_left")]
+_UPRIGHT = [CONTROL_INDEX[name] for name in ("lips_vertical", "nose_to_lip", "chin_to_lip")]
 FEATHER_S = 0.5  # how far beyond the changed frames a face may still move, easing into the original
 FOLLOW = True  # the better default on validation takes, by the table of edits
 FOLLOW_ROUNDS = 6  # of landing; the guess need not be exact
@@ -161,10 +163,10 @@ class Dragger:
         original = weights = self.take.weights[first:last].copy()
         if moved.any():
             held = moved | (self._held[first:last] & moved.any(axis=1, keepdims=True))
+            share = _contact(wanted, moved | _kept_together(moved), fps=self.take.fps)
             fed = _followed(original, wanted, held) if follow else wanted
-            weights = self._composite(original, fed, first, moved.any(axis=1))
-            share = held.astype(float) if exact_curve else _contact(wanted, moved, fps=self.take.fps)
-            weights = _land(weights, wanted, share)
+            weights = self._composite(original, fed + share * (wanted - fed), first, moved.any(axis=1))
+            weights = _land(weights, wanted, np.maximum(share, held) if exact_curve else share)
         return Patch(first, weights, wanted, bundled_measurer().measure(weights))
 
     def _composite(self, weights: Array, wanted: Array, first: int, changed: np.ndarray) -> Array:
@@ -242,6 +244,14 @@ def _contact(wanted: Array, moved: Mask, *, fps: float) -> Array:
     """
     hold = ease((CONTACT_FROM_MM - wanted) / (CONTACT_FROM_MM - CONTACT_MM))
     return _eased_in_time(hold * moved, frames=round(HOLD_S * fps)) * moved
+
+
+def _kept_together(moved: Mask) -> Mask:
+    """Return where lips that touch shall go on to, (frames, 8): what moves corners alone says nothing of parting them."""
+    sideways = moved[:, _SIDEWAYS].any(axis=1) & ~moved[:, _UPRIGHT].any(axis=1)
+    kept: Mask = np.zeros(moved.shape, bool)
+    kept[sideways, CONTROL_INDEX["lips_vertical"]] = True
+    return kept
 
 
 def _followed(weights: Array, wanted: Array, held: Mask) -> Array:

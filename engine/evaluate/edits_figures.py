@@ -16,8 +16,8 @@ from engine.evaluate.edits_catalogue import KINDS, PLACES
 from engine.take import Array
 
 KINDS_PER_SHEET = 5
-LEFT, RIGHT, BELOW, ABOVE = -70.0, 70.0, -85.0, 85.0  # mm of the face that is shown
-LIGHT = np.array([0.25, 0.45, 0.85])
+LEFT, RIGHT, BELOW, ABOVE = -68.0, 68.0, -130.0, 45.0  # mm of the face that is shown
+LIGHT = np.array([0.15, 0.3, 0.94])
 
 
 def draw(made: Sequence[Made], folder: Path, report: Callable[[str], None]) -> list[Path]:
@@ -84,4 +84,4 @@ def _shaded(weights: Array) -> tuple[Array, Array]:
     front = np.flatnonzero((normal[:, 2] > 0) & (np.abs(corners[:, :, 0]).max(axis=1) < RIGHT))
     front = front[np.argsort(corners[front, :, 2].mean(axis=1))]
     base = character.colours[character.triangles[front]].mean(axis=1) / 255
-    return corners[front], np.clip(base * (0.35 + 0.75 * np.clip(normal[front] @ LIGHT, 0, 1))[:, None], 0, 1)
+    return corners[front], np.clip(base * (0.55 + 0.5 * np.clip(normal[front] @ LIGHT, 0, 1))[:, None], 0, 1)
