@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QPushButton
+from PySide6.QtWidgets import QLabel, QPushButton
 
 from app.commands import EditCommand
 from app.curve_table import CURVES
@@ -22,7 +22,8 @@ class FactsSection(Section):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "This edit")
-        self.facts = quiet("")
+        self.told, self.facts = QLabel(wordWrap=True), quiet("")
+        self.column.addWidget(self.told)
         self.column.addWidget(self.facts)
         self.again_button = QPushButton("Apply to the last edit")
         self.again_button.setToolTip(
@@ -43,45 +44,49 @@ class FactsSection(Section):
         modes = {"exact": session.exact, "follow": session.follow}
         made = {name: step.edit.inputs.get(name) for name in modes} if step is not None else modes
         self.again_button.setVisible(session.draft is None and made != modes)
-        self.facts.setText("\n".join(self._lines(step)))
+        told = self._told_of(step)
+        self.told.setText("\n".join(told))
+        self.told.setVisible(bool(told))
+        self.facts.setText(self._counts())
 
     def _step(self) -> EditCommand | None:
         """Return the last edit, where it asked for a curve."""
         step = self.session.undo.command(self.session.undo.index() - 1)
         return step if isinstance(step, EditCommand) and step.asked is not None else None
 
-    def _lines(self, step: EditCommand | None) -> list[str]:
-        session, draft, frames = self.session, self.session.draft, len(self.session.take)
+    def _told_of(self, step: EditCommand | None) -> list[str]:
+        session, draft = self.session, self.session.draft
         if draft is not None:
             rows = slice(draft.start, draft.stop)
-            known = draft.asked is not draft.reached
-            told = self._told(draft.weights, draft.asked, session.controls[rows], session.asked[rows], session.exact)
-            return [*(told if known else []), f"moves {draft.stop - draft.start:,} of {frames:,} frames"]
-        if not session.undo.index():
-            return ["Nothing changed yet. Drag a curve up or down."]
-        moved = int((session.take.weights != session.original.weights).any(axis=1).sum())
-        differ = [
-            f"{moved:,} of {frames:,} frames differ from the original",
-            f"{frames - moved:,} frames bit-identical",
-        ]
+            if draft.asked is draft.reached:
+                return []  # nothing was asked of a control
+            return _told(draft.weights, draft.asked, session.controls[rows], session.asked[rows], session.exact)
         if step is None or step.asked is None:
-            return differ
-        exact = bool(step.edit.inputs.get("exact"))
-        return [*self._told(step.edit.weights, step.asked[1], *step.before, exact), *differ]
+            return []
+        return _told(step.edit.weights, step.asked[1], *step.before, bool(step.edit.inputs.get("exact")))
 
-    @staticmethod
-    def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, exact: bool) -> list[str]:
-        """Return a line for each control that an edit asked for: (n, 52) weights, (n, 8) mm asked and there before."""
-        changed = asked != controls
-        reached, everything = bundled_measurer().measure(weights), np.where(changed, asked, asked_before)
-        short = {
-            found.control: found
-            for found in shortfalls(weights, everything, bundled_measurer(), exact_curve=exact)
-            if changed[:, found.control].any()
-        }
-        lines = []
-        for lane in np.flatnonzero(changed.any(axis=0)).tolist():
-            row = int(np.argmax(np.abs(asked[:, lane] - controls[:, lane])))
-            met = f"{CURVES[lane].title} {reached[row, lane]:.1f} mm of {asked[row, lane]:.1f} asked"
-            lines.append(str(short[lane]) if lane in short else met)
-        return lines
+    def _counts(self) -> str:
+        session, draft, frames = self.session, self.session.draft, len(self.session.take)
+        if draft is not None:
+            return f"moves {draft.stop - draft.start:,} of {frames:,} frames"
+        if not session.undo.index():
+            return "Nothing changed yet. Drag a curve up or down."
+        moved = int((session.take.weights != session.original.weights).any(axis=1).sum())
+        return f"{moved:,} of {frames:,} frames differ from the original\n{frames - moved:,} frames bit-identical"
+
+
+def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, exact: bool) -> list[str]:
+    """Return a line for each control that an edit asked for: (n, 52) weights, (n, 8) mm asked and there before."""
+    changed = asked != controls
+    reached, everything = bundled_measurer().measure(weights), np.where(changed, asked, asked_before)
+    short = {
+        found.control: found
+        for found in shortfalls(weights, everything, bundled_measurer(), exact_curve=exact)
+        if changed[:, found.control].any()
+    }
+    lines = []
+    for lane in np.flatnonzero(changed.any(axis=0)).tolist():
+        row = int(np.argmax(np.abs(asked[:, lane] - controls[:, lane])))
+        met = f"{CURVES[lane].title} {reached[row, lane]:.1f} mm of {asked[row, lane]:.1f} asked"
+        lines.append(str(short[lane]) if lane in short else met)
+    return lines
