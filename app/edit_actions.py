@@ -38,6 +38,8 @@ class EditActions(QObject):
         self._session, self._inference, self._curves, self._filling = session, inference, curves, filling
         self._copied: Array | None = None
         self.cutoff_hz: Callable[[], float] = lambda: 6.0
+        self.let_go: Callable[[], bool] = lambda: False  # of what is held on the timeline; whether there was any
+        self.stop_else: Callable[[], bool] = lambda: False  # stops other work under way; whether there was any
 
     def undo(self) -> None:
         """Take back the last step."""
@@ -60,7 +62,7 @@ class EditActions(QObject):
             self._filling.drop()
         elif self._inference.busy:
             self._inference.cancel()
-        else:
+        elif not (self.let_go() or self.stop_else()):
             self._session.select(None)
 
     def close_here(self) -> None:
@@ -176,6 +178,10 @@ class EditActions(QObject):
     def live_tool(self) -> None:
         """Work with a phone's stream."""
         self._session.choose_tool("live")
+
+    def show_removed(self) -> None:
+        """Draw what the Clean tool would remove, or not."""
+        self._session.show_removed(shown=not self._session.shows_removed)
 
     def clean_tool(self) -> None:
         """Work with the Clean tool."""

@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from engine.anatomy import impossible
 from engine.character import bundled
 from engine.controls import bundled_measurer
 from engine.corpus import Piece, data_folder, split, whole_faces
 from engine.editing import FEATHER_S, Dragger, warm_up
 from engine.errors import EngineError
 from engine.evaluate.edits_catalogue import EASE_FRAMES, KINDS, SPEAKS_OF, Scripted, scripted
-from engine.evaluate.plausibility import STRETCH, Recorded, impossible, recorded
+from engine.evaluate.plausibility import STRETCH, Recorded, recorded
 from engine.evaluate.regress import pieces_to_measure
 from engine.evaluate.regress_edits import PARTS
 from engine.take import MODEL_FPS, Array, Take
@@ -30,6 +31,7 @@ MODES: dict[str, dict[str, bool]] = {
     "follow, exact": {"follow": True, "exact_curve": True},
 }
 UNMOVED_MM = 0.1  # vertices that the shapes an edit speaks of move by less are beside it
+NEAR = 150  # frames on either side whose own motion an edit's ends are held against
 EVERY = 4  # vertices between those on which motion is measured
 _SURFACE = bundled().deltas[:, np.flatnonzero(np.abs(bundled().deltas).max(axis=(0, 2)) > UNMOVED_MM)[::EVERY]]
 
@@ -80,7 +82,7 @@ def table(data: Path | None, report: Report) -> list[Row]:
     the edit's frames, `missed_peak_mm` the same where most was asked, `reached` which share of it was reached there.
     `beside_*` is what moved that the edit does not speak of: mean change of a weight, mean and largest move of a vertex.
     `step_mm` is the largest move of the surface from frame to frame where the edit comes and goes, `step_before_mm`
-    there before, `step_take_mm` anywhere in the take. `impossible` is the share of frames that hold a pair of shapes
+    there before, `step_take_mm` anywhere within some seconds of it. `impossible` is the share of frames that hold a pair of shapes
     that exclude each other, less that before; `times_recorded` how much further the motion is from the nearest training
     take than before (null where these are not at hand). `ms` is the mean time of a drag.
     """
@@ -157,9 +159,12 @@ def _beside(made: Made) -> Row:
 
 
 def _steps(made: Made) -> Row:
-    first, last = made.edit.frames
-    at_ends = np.r_[made.reach.start : first, last - 1 : made.reach.stop - 1]
-    before, after = (_step_mm(one) for one in (made.edit.piece.weights, made.weights))
+    start = max(0, made.edit.frames[0] - NEAR)
+    first, last = made.edit.frames[0] - start, made.edit.frames[1] - start
+    reach = made.reach.start - start, made.reach.stop - start
+    at_ends = np.r_[reach[0] : first, last - 1 : reach[1] - 1]
+    near = slice(start, made.edit.frames[1] + NEAR)
+    before, after = (_step_mm(one[near]) for one in (made.edit.piece.weights, made.weights))
     return {
         "step_mm": float(after[at_ends].max()),
         "step_before_mm": float(before[at_ends].max()),

@@ -58,7 +58,9 @@ def _pair(axis: Any, made: Made) -> None:
     frame, told = _peak(made)
     for place, weights in enumerate((made.edit.piece.weights[frame], made.weights[frame])):
         corners, colours = _shaded(weights)
-        shown = PolyCollection(list(corners[:, :, :2] + (place * (RIGHT - LEFT), 0.0)), facecolors=colours, antialiased=False)
+        shown = PolyCollection(
+            list(corners[:, :, :2] + (place * (RIGHT - LEFT), 0.0)), facecolors=colours, antialiased=False
+        )
         axis.add_collection(shown)
     axis.set(xlim=(LEFT, 2 * RIGHT - LEFT), ylim=(BELOW, ABOVE), aspect="equal")
     axis.set_title(f"{made.edit.kind.name}\n{made.edit.piece.source} {frame}: {told}", fontsize=7)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from datetime import UTC, datetime
 from typing import Any
 
@@ -15,6 +15,7 @@ from engine.errors import EngineError
 from engine.formats.livelink import DAY_S, MAX_COLUMNS, Origin
 from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
 from engine.project.records import MARK, Contents, Edit, Marks, Media, Note, Pin, Span, Summary, marks_of
+from engine.project.replaying import said
 from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
 MAX_FRAMES = 1_000_000  # over four hours at 60 fps
@@ -25,10 +26,15 @@ JSON_BYTES = 32  # that a character of JSON may grow to when it is read
 ROTATIONS = 9
 
 
-def write_contents(database: sqlite3.Connection, contents: Contents) -> None:
-    """Fill empty tables."""
+def write_contents(database: sqlite3.Connection, contents: Contents, report: Callable[[float], None]) -> None:
+    """Fill empty tables; `report` hears the share of the frames that are written."""
+    takes = [contents.original.weights, *(edit.weights for edit in contents.edits)]
+    written = np.cumsum([len(weights) for weights in takes])
+    report(0.0)
     _write_take(database, contents.original)
-    write_edits(database, 0, contents.edits)
+    for place, edit in enumerate(contents.edits):
+        report(written[place] / written[-1])
+        write_edits(database, place, (edit,))
     write_marks(database, contents.marks)
     write_state(database, contents)
 
@@ -38,6 +44,7 @@ def read_contents(database: sqlite3.Connection, budget: Budget) -> Contents:
     try:
         take = _read_take(database, budget)
         edits = tuple(_read_edits(database, len(take), budget))
+        _require_said(edits)
         position, verdict = one(database, "SELECT position, verdict FROM state")
         _require(0 <= position <= len(edits), "its place in the undo history is not there")
         return Contents(take, edits, position, _read_marks(database, verdict, len(take), budget))
@@ -208,6 +215,14 @@ def _require_sound(marks: Marks, length: int) -> None:
     texts += [text for note in marks.notes for text in (note.author, note.time, note.text)]
     texts += [text for entry in marks.media for text in (entry.kind, entry.path, entry.sha256)]
     _require(all(isinstance(text, str) for text in (*texts, marks.verdict)), "a mark is not what it should be")
+
+
+def _require_said(edits: tuple[Edit, ...]) -> None:
+    """Check that each step on the visemes fits the lane that it finds."""
+    try:
+        said(edits)
+    except (KeyError, TypeError, ValueError) as error:
+        raise DamagedError("an edit does not say what it did to the visemes") from error
 
 
 def _is_pose(pose: object) -> bool:
