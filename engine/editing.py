@@ -256,6 +256,8 @@ def _kept_together(moved: Mask) -> Mask:
 
 def _followed(weights: Array, wanted: Array, held: Mask) -> Array:
     """Return curves, (frames, 8) in mm, with the values that are not `held` as the held ones bring them about."""
+    if not held[:, [*_SIDEWAYS, *_UPRIGHT]].any():
+        return wanted  # one lid says nothing of the other
     guess = _land(weights, wanted, held.astype(float), free=GUESSED, rounds=FOLLOW_ROUNDS)
     return np.where(held, wanted, bundled_measurer().measure(guess))
 
