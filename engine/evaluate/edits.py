@@ -83,8 +83,8 @@ def table(data: Path | None, report: Report) -> list[Row]:
     `beside_*` is what moved that the edit does not speak of: mean change of a weight, mean and largest move of a vertex.
     `step_mm` is the largest move of the surface from frame to frame where the edit comes and goes, `step_before_mm`
     there before, `step_take_mm` anywhere within some seconds of it. `impossible` is the share of frames that hold a pair of shapes
-    that exclude each other, less that before; `times_recorded` how much further the motion is from the nearest training
-    take than before (null where these are not at hand). `ms` is the mean time of a drag.
+    that exclude each other, less that before; `unlike_mm` how far the motion is from the nearest stretch of the training
+    takes, `unlike_before_mm` how far it was (null where these are not at hand). `ms` is the mean time of a drag.
     """
     return measured(pieces_to_measure(data), report)
 
@@ -110,7 +110,7 @@ def _banks(report: Report) -> dict[str, Recorded]:
     try:
         training = split(data_folder())[0]
     except EngineError:
-        report("times_recorded is left out: the recorded training takes are not here (RETAKE_DATA)")
+        report("unlike_mm is left out: the recorded training takes are not here (RETAKE_DATA)")
         return {}
     return {
         part: recorded([piece.weights for piece in (whole_faces(training) if part == "eyes" else training)], columns)
