@@ -86,7 +86,7 @@ class MainWindow(QMainWindow):
         self.media = Media(self.session, self.transport, settings=self.settings)
         self.files = FileActions(self.session, self.keeper, self.media, self.settings, self)
         self.sound = MediaActions(self.session, self.media, self)
-        self.status = StatusBar(self.session, self.keeper, self.media)
+        self.status = StatusBar(self.session, self.keeper, self.files.opening, self.media)
         self.notices, self.missing = Notices(), MissingMedia()
         self.preview = PreviewPanel(self.session, self.inference)
         self.reference = ReferencePanel(self.session)
@@ -252,9 +252,9 @@ class MainWindow(QMainWindow):
 
     # --- opening and closing
 
-    def load(self, path: Path) -> bool:
-        """Open a take or a project; returns whether it is open now."""
-        return self.files.load(path)
+    def load(self, path: Path) -> None:
+        """Read a take or a project beside what is open, and open it when it is read; returns at once."""
+        self.files.load(path)
 
     def _show_opened(self) -> None:
         self.transport.run(0.0)
@@ -300,6 +300,7 @@ class MainWindow(QMainWindow):
             application.removeEventFilter(self)
         self.transport.run(0.0)
         self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
+        self.files.opening.close()
         self.keeper.close()
         self.inference.close()
         self.media.close()

@@ -47,7 +47,7 @@ def floats(text: Bytes, starts: Places, ends: Places) -> Array:
             numbers[index] = float(text[starts[index] : ends[index]].tobytes())
         except ValueError:
             raise ValueError(index) from None
-    return numbers
+    return np.asarray(numbers)
 
 
 def _whole(room: Bytes, stops: Places, counts: Places) -> tuple[Places, Mask]:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
 from engine.formats.decimals import floats
+from engine.formats.livelink_table import table
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take
 
 ROTATIONS = (
@@ -31,9 +32,8 @@ MAX_COLUMNS = 1024
 MAX_HEADER_BYTES = 64 * 1024
 MAX_INSERTED_SHARE = 1.0  # more missed frames than recorded ones means that the clock is not to be believed
 FALLBACK_FPS = 30.0
-BLOCK_BYTES = 1 << 18  # of text read at once: it stays in the cache, and a window beside it waits for one at most
-BLOCK_ROWS = 4096  # of timecodes, likewise
-COMMA, NEWLINE, COLON = b",\n:"
+BLOCK_ROWS = 4096  # of timecodes read at once
+COLON = ord(":")
 EXPECTED = "Retake reads the CSV files that Live Link Face records."
 
 
@@ -87,16 +87,16 @@ def read(
     FormatError : with file, row and column, where the file is not such a take
     """
     content = _content(path)
-    header, first = _header(content, path)
+    header, begin = _header(content, path)
     newline = b"\r\n" if b"\r\n" in content[:MAX_HEADER_BYTES] else b"\n"
     columns = _columns(header, path)
-    timecodes, values, lost = _table(content, first, header, path, report)
+    timecodes, values, lost = table(content, begin, header, path, report)
     if lost.all():
         raise FormatError(f"{path.name} holds no frame with a face.", "The tracker lost the face in every row.")
     _require_finite(values, header, path)
     clock = _clock(timecodes, fps)
     take_weights, take_lost, rotations = _resample(values, lost, clock, columns, swap=swap)
-    decimals = _decimals(content, first)
+    decimals = _decimals(content, begin)
     origin = Origin(tuple(header), tuple(timecodes), clock.rows, values, lost, decimals, newline, swap)
     take = Take(
         weights=take_weights,
@@ -227,69 +227,6 @@ def _columns(header: list[str], path: Path) -> dict[str, int]:
     if missing:
         raise FormatError(f"{path.name} lacks the column {missing[0]} ({len(missing)} shapes are missing).", EXPECTED)
     return columns
-
-
-def _table(
-    content: bytes, first: int, header: list[str], path: Path, report: Callable[[float], None] | None
-) -> tuple[list[bytes], Array, Mask]:
-    """Split rows into timecodes and (rows, cells - 2) values; a row of two cells with count 0 is a lost frame."""
-    timecodes: list[bytes] = []
-    values: list[Array] = []
-    lost: list[Mask] = []
-    stop = _end(content, first)
-    while first < stop:
-        end = content.find(b"\n", min(first + BLOCK_BYTES, stop), stop) % (stop + 1)
-        block = _block(content[first:end] + b"\n", len(header), len(timecodes) + 2, path, last=end == stop)
-        timecodes += block[0]
-        values.append(block[1])
-        lost.append(block[2])
-        if report is not None:
-            report(end / stop)
-        first = end + 1
-    if not timecodes:
-        raise FormatError(f"{path.name} has a header but no frames.")
-    return timecodes, np.concatenate(values), np.concatenate(lost)
-
-
-def _end(content: bytes, first: int) -> int:
-    """Return where the last row that is not blank ends."""
-    stop = len(content)
-    while stop > first and content[max(first, stop - BLOCK_BYTES) : stop].isspace():
-        stop = max(first, stop - BLOCK_BYTES)
-    tail = content[max(first, stop - BLOCK_BYTES) : stop]
-    return stop - len(tail) + len(tail.rstrip())
-
-
-def _block(block: bytes, cells: int, row: int, path: Path, *, last: bool) -> tuple[list[bytes], Array, Mask]:
-    """Split whole rows of text, the first of them the row `row` of the file, like `_table`."""
-    text = np.frombuffer(block, np.uint8)
-    ends = np.flatnonzero((text == COMMA) | (text == NEWLINE))
-    starts = np.concatenate([[0], ends[:-1] + 1])
-    closing = np.flatnonzero(text[ends] == NEWLINE)
-    opening = np.concatenate([[0], closing[:-1] + 1])
-    counts = closing - opening + 1
-    spans = zip(starts[opening].tolist(), ends[opening].tolist(), strict=True)
-    timecodes = [block[begin:end].strip() for begin, end in spans]
-    lost = counts == 2
-    for index in np.flatnonzero(lost | (counts != cells)).tolist():
-        lost[index] = lost[index] and block[ends[opening[index]] + 1 : ends[closing[index]]].strip() == b"0"
-        if not lost[index] and counts[index] != cells:
-            raise FormatError(
-                f"{path.name} has {counts[index]} cells in row {row + index} where its header has {cells}.",
-                "The file may be cut off or damaged." if last and index == len(counts) - 1 else "",
-            )
-    numbers = (opening[~lost, None] + np.arange(2, cells)).ravel()
-    values = np.zeros((len(counts), cells - 2))
-    try:
-        values[~lost] = floats(text, starts[numbers], ends[numbers]).reshape(-1, cells - 2)
-    except ValueError as error:
-        seen, column = divmod(error.args[0], cells - 2)
-        cell = numbers[error.args[0]]
-        shown = block[starts[cell] : ends[cell]].rstrip(b"\r")[:20].decode("utf-8", "replace")
-        raise FormatError(
-            f"{path.name} has {shown!r} for a number in row {row + np.flatnonzero(~lost)[seen]}, column {column + 3}."
-        ) from None
-    return timecodes, values, lost
 
 
 def _require_finite(values: Array, header: list[str], path: Path) -> None:
