@@ -105,16 +105,16 @@ class Lane:
         self.gutter.text_colour = QColor(colours.text)
         self.gutter.removed_colour = QColor(colours.warning)
 
-    def fit(self, *curves: Array) -> None:
-        """Choose the range of values so that the curves, (frames,) each, fit with a margin; weights show 0..1."""
+    def fit(self) -> None:
+        """Choose the range of values so that all curves fit with a margin; weights show 0..1."""
+        assert self._curves is not None
+        ranges = np.array([thinned.range for thinned in self._curves if thinned is not None])
+        low, high = float(np.fmin.reduce(ranges[:, 0])), float(np.fmax.reduce(ranges[:, 1]))
         if self.curve.is_weight:
-            low = min(0.0, *(float(curve.min()) for curve in curves))
-            high = max(1.0, *(float(curve.max()) for curve in curves))
+            low, high = min(0.0, low), max(1.0, high)
             self.gutter.range = (low, high)
             self._set_fitted(low - 0.06, high + 0.06)
             return
-        low = min(float(np.nanmin(curve)) for curve in curves)
-        high = max(float(np.nanmax(curve)) for curve in curves)
         spare = max(0.08 * (high - low), (4.0 - (high - low)) / 2, 0.2)
         self.gutter.range = (low, high)
         self._set_fitted(low - spare, high + spare)
@@ -145,7 +145,9 @@ class Lane:
                 if thinned is not None and curve is not None:
                     thinned.changed_to(curve, touched)
         else:
-            self._curves = Thinned(original), Thinned(reached), None if asked is None else Thinned(asked)
+            first = Thinned(original)
+            second = first.copy() if first.stands_for(reached) else Thinned(reached)
+            self._curves = first, second, None if asked is None else Thinned(asked)
 
     def draw_original(self, visible: tuple[int, int]) -> None:
         """Draw the curve as opened, a half-open range of frames."""

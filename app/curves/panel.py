@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QMouseEvent, QResizeEvent, QWheelEvent
@@ -135,11 +134,8 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             )
 
     def _fit_values(self) -> None:
-        session = self.session
         for lane in self.lanes:
-            curves = [session.original_curve(lane.key), session.curve(lane.key)]
-            asked = session.asked_curve(lane.key)
-            lane.fit(*curves, *([asked] if asked is not None and np.isfinite(asked).any() else []))
+            lane.fit()
 
     def _arrange(self) -> None:
         for row, lane in enumerate(self.lanes):

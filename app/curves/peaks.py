@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import reduce
+
 import numpy as np
 
 from engine.take import Array
@@ -19,6 +21,7 @@ def peaks(visible: Array, start: int, columns: int) -> tuple[Array, Array]:
     """Return frames and values that draw visible, (n,) from frame `start`, on `columns` pixels.
 
     Where more than two frames fall on a pixel, only the lowest and highest value of each are kept, so no spike is lost.
+    NaN is drawn only where a pixel has nothing else.
     """
     step = len(visible) // max(1, columns)
     if step < 3:
@@ -31,8 +34,8 @@ def _extremes(lowest: Array, highest: Array, start: int, step: int) -> tuple[Arr
     edges = np.arange(start // step * step, start + len(lowest), step)
     offsets = np.maximum(edges - start, 0)
     values = np.empty((len(edges), 2))
-    np.minimum.reduceat(lowest, offsets, out=values[:, 0])
-    np.maximum.reduceat(highest, offsets, out=values[:, 1])
+    np.fmin.reduceat(lowest, offsets, out=values[:, 0])
+    np.fmax.reduceat(highest, offsets, out=values[:, 1])
     return np.repeat(edges + step / 2, 2), values.ravel()
 
 
@@ -48,9 +51,21 @@ class Thinned:
         self._curve = curve
         self._blocks: tuple[Array, Array] | None = None
 
+    def copy(self) -> Thinned:
+        """Return another that stands for the same curve, without counting its blocks again."""
+        twin = Thinned(self._curve)
+        twin._blocks = self._kept()
+        return twin
+
     def stands_for(self, curve: Array) -> bool:
         """Whether this stands for the very same values in memory."""
         return curve.shape == self._curve.shape and curve.__array_interface__ == self._curve.__array_interface__
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The lowest and the highest value; NaN where there is none."""
+        lowest, highest = self._kept()
+        return float(np.fmin.reduce(lowest)), float(np.fmax.reduce(highest))
 
     def changed_to(self, curve: Array, rows: tuple[int, int]) -> None:
         """Stand for a curve of the same length that differs in a half-open range of frames at most."""
@@ -68,16 +83,18 @@ class Thinned:
         if step < 2:
             visible = self._curve[start:stop]
             return peaks(visible if draft is None else overlaid(visible, start, *draft), start, columns)
-        if self._blocks is None:
-            self._blocks = _blocks(self._curve)
-        lowest, highest = self._blocks if draft is None else self._blocks_with(*draft)
+        lowest, highest = self._kept() if draft is None else self._blocks_with(*draft)
         shown = slice(start // BLOCK, -(-stop // BLOCK))
         blocks, values = _extremes(lowest[shown], highest[shown], shown.start, step)
         return np.minimum(BLOCK * blocks, len(self._curve) - 1.0), values
 
+    def _kept(self) -> tuple[Array, Array]:
+        if self._blocks is None:
+            self._blocks = _blocks(self._curve)
+        return self._blocks
+
     def _blocks_with(self, rows: Array, start: int) -> tuple[Array, Array]:
-        assert self._blocks is not None
-        lowest, highest = (kept.copy() for kept in self._blocks)
+        lowest, highest = (kept.copy() for kept in self._kept())
         first, last = start // BLOCK, -(-(start + len(rows)) // BLOCK)
         changed = overlaid(self._curve[first * BLOCK : last * BLOCK], first * BLOCK, rows, start)
         lowest[first:last], highest[first:last] = _blocks(changed)
@@ -95,6 +112,6 @@ def overlaid(visible: Array, start: int, rows: Array, rows_start: int) -> Array:
 
 
 def _blocks(curve: Array) -> tuple[Array, Array]:
-    edges = np.arange(0, len(curve), BLOCK)
-    curve = np.ascontiguousarray(curve)
-    return np.minimum.reduceat(curve, edges), np.maximum.reduceat(curve, edges)
+    whole = np.append(curve, curve[-1:].repeat(-len(curve) % BLOCK))
+    in_turn = whole.reshape(-1, BLOCK).T  # the first frames of all blocks, the second ones, and so on
+    return reduce(np.fmin, in_turn), reduce(np.fmax, in_turn)
