@@ -17,9 +17,9 @@ from engine.models.checkpoint import MODELS, load_model, save_model
 from engine.models.threads import one_thread
 from engine.take import Array
 
-# How much stronger than in training the noise is where nothing settles the pose: variants lie half as far apart again, and
-# the speed of fills is nearer to that of recordings, for two per cent of error (of 1 ... 8 on validation takes; from 4 on
-# lids flutter).
+# How much stronger than in training the noise is where nothing settles the pose: variants lie two thirds farther apart, and
+# at four seconds fills move half as fast as recordings instead of two fifths, for one to two per cent of error (of
+# 1 ... 8 on validation takes; from 4 on lids flutter).
 LIVELINESS = 2.5
 _STATISTICS = ("mean", "scale", "rest", "spread", "cross")
 
