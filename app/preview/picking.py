@@ -90,16 +90,18 @@ def facing(side: Side, view: View, at: Array) -> Mask:
 def vertex_under(head: Character, weights: Array, view: View, x: float, y: float) -> int | None:
     """Return the visible vertex nearest to a pixel: a corner of the first triangle that the ray through it meets.
 
-    Moeller and Trumbore's test on all triangles at once; None where the ray meets none.
+    Moeller and Trumbore's test on the triangles whose picture is about the pixel; None where the ray meets none.
     """
     vertices = head.vertices(weights).astype(np.float64)
-    direction = view.ray(x, y)
-    hit = _first_hit(vertices[head.triangles], view.eye, direction)
+    flat = view.project(vertices)
+    across, down = flat[:, 0][head.triangles] - x, flat[:, 1][head.triangles] - y
+    about = (across.min(axis=1) <= 0) & (across.max(axis=1) >= 0) & (down.min(axis=1) <= 0) & (down.max(axis=1) >= 0)
+    near = head.triangles[about]
+    hit = _first_hit(vertices[near], view.eye, view.ray(x, y))
     if hit is None:
         return None
-    corners = head.triangles[hit]
-    away = np.linalg.norm(view.project(vertices[corners]) - (x, y), axis=1)
-    return int(corners[np.argmin(away)])
+    away = np.linalg.norm(flat[near[hit]] - (x, y), axis=1)
+    return int(near[hit][np.argmin(away)])
 
 
 def _first_hit(corners: Array, eye: Array, direction: Array) -> int | None:
