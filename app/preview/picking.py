@@ -94,14 +94,20 @@ def vertex_under(head: Character, weights: Array, view: View, x: float, y: float
     """
     vertices = head.vertices(weights).astype(np.float64)
     flat = view.project(vertices)
-    across, down = flat[:, 0][head.triangles] - x, flat[:, 1][head.triangles] - y
-    about = (across.min(axis=1) <= 0) & (across.max(axis=1) >= 0) & (down.min(axis=1) <= 0) & (down.max(axis=1) >= 0)
+    about = _around(flat[:, 0], x, head.triangles) & _around(flat[:, 1], y, head.triangles)
     near = head.triangles[about]
     hit = _first_hit(vertices[near], view.eye, view.ray(x, y))
     if hit is None:
         return None
     away = np.linalg.norm(flat[near[hit]] - (x, y), axis=1)
     return int(near[hit][np.argmin(away)])
+
+
+def _around(place: Array, wanted: float, triangles: npt.NDArray[np.int32]) -> Mask:
+    """Return which triangles reach from one side of a coordinate, (vertices,), to the other."""
+    beyond = (place > wanted).astype(np.int8)  # sums over columns: a minimum over three is twenty times slower
+    count = beyond[triangles[:, 0]] + beyond[triangles[:, 1]] + beyond[triangles[:, 2]]
+    return np.asarray((count > 0) & (count < 3))
 
 
 def _first_hit(corners: Array, eye: Array, direction: Array) -> int | None:
