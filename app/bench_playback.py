@@ -6,21 +6,19 @@ import tempfile
 import threading
 import time
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 
 from app.playback.clock import Pull
 from app.playback.device import LATENCY_S
-from engine.controls import CONTROLS
+from app.preview.worker import Wanted
 from engine.speed import Speed
 from engine.speed.drag import performance_of
-from engine.take import SHAPES
 
 PLAYED_S = 30.0
 RATE, BLOCK = 48_000, 512
 PICTURES_GOAL_MS = 34.0  # 30 pictures a second, less one in fifty
-BEAT_MS = 1
+BEAT_MS, SETTLED_MS = 1, 5000
 SIZE = 512
 
 
@@ -96,8 +94,14 @@ def playback_job(seconds: float = PLAYED_S) -> list[Speed]:
         window.session.attach_audio(Audio(samples.astype(np.float32), RATE))
         ratio = window.preview.face.devicePixelRatioF()
         window.preview.face.setFixedSize(round(SIZE / ratio), round(SIZE / ratio))
-        shown: list[float] = []
-        window.preview.drawing.done.connect(lambda *_: shown.append(time.perf_counter()))
+        shown: list[bytes] = [b""]  # each face once, however often it is drawn
+
+        def drawn(wanted: Wanted, _: object) -> None:
+            face = wanted.shot.faces[0]
+            if face is not None and face.tobytes() != shown[-1]:
+                shown.append(face.tobytes())
+
+        window.preview.drawing.done.connect(drawn)
         window.transport.set_loop(True)
         window.transport.toggle()
         QTimer.singleShot(round(seconds * 1e3), application.quit)
@@ -105,7 +109,7 @@ def playback_job(seconds: float = PLAYED_S) -> list[Speed]:
         application.exec()
         spent_s = time.perf_counter() - began
         window.transport.run(0.0)
-        pictures = sum(at < began + spent_s for at in shown)
+        pictures = len(shown) - 1
         window.close()
     (sink,) = sinks
     return [
@@ -116,34 +120,32 @@ def playback_job(seconds: float = PLAYED_S) -> list[Speed]:
 
 
 def saving_job() -> list[Speed]:
-    """Change every frame of an hour at 60 fps, save it, and measure the longest the window did not answer."""
+    """Save an hour at 60 fps, then a copy of it, and measure the longest the window did not answer meanwhile."""
     from PySide6.QtCore import QEventLoop, QTimer
     from PySide6.QtWidgets import QApplication
-
-    from app.commands import EditCommand
 
     application = QApplication.instance() or QApplication(["retake"])
     with tempfile.TemporaryDirectory() as folder:
         window = _window(performance_of(3600.0, 60.0), Path(folder))
-        session, keeper = window.session, window.keeper
-        rows = np.random.default_rng(0).random((len(session.take), len(SHAPES)))
-        asked = np.zeros((len(rows), len(CONTROLS)))
-        patch = SimpleNamespace(start=0, stop=len(rows), weights=rows, asked=asked, reached=asked)
-        session.undo.push(EditCommand(session, patch, "everything"))  # type: ignore[arg-type]
-        application.processEvents()
-        beats, loop = [time.perf_counter()], QEventLoop()
+        loop = QEventLoop()
+        QTimer.singleShot(SETTLED_MS, loop.quit)  # what opening sets off is no part of saving
+        loop.exec()
+        beats: list[float] = []
         beat = QTimer(interval=BEAT_MS)
         beat.timeout.connect(lambda: beats.append(time.perf_counter()))
-        keeper.saved.connect(loop.quit)
-        keeper.failed.connect(loop.quit)
+        window.keeper.saved.connect(loop.quit)
+        window.keeper.failed.connect(loop.quit)
+        beats.append(time.perf_counter())
         beat.start()
-        keeper.save_as(Path(folder) / "hour.retake")
-        loop.exec()
+        for name in ("hour", "copy"):
+            window.keeper.save_as(Path(folder) / f"{name}.retake")
+            loop.exec()
+        beat.stop()
+        application.processEvents()
         window.close()
-    stall_ms = 1e3 * float(np.diff(beats).max())
     return [
-        Speed("save_60min_window_stall_ms_worst", stall_ms, "ms", 50.0),
-        Speed("save_60min_s", beats[-1] - beats[0], "s", 15.0),
+        Speed("save_60min_window_stall_ms_worst", 1e3 * float(np.diff(beats).max()), "ms", 50.0),
+        Speed("save_60min_twice_s", beats[-1] - beats[0], "s", 15.0),
     ]
 
 

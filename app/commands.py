@@ -60,6 +60,19 @@ class EditCommand(QUndoCommand):
         self._after = (patch.weights, patch.reached, asked)
         self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {})
 
+    @property
+    def asked(self) -> tuple[int, Array] | None:
+        """The first frame and the curves, (n, 8) in mm, that this step asked for; None where it asked for no curve."""
+        if "follow" not in self.edit.inputs:
+            return None
+        new = ~((self._after[2] == self._before[2]) | np.isnan(self._after[2]))
+        return self._start, np.where(new, self._after[2], self._before[1])
+
+    @property
+    def before(self) -> tuple[Array, Array]:
+        """The controls of the rows that were there, (n, 8) in mm, and what had been asked of them."""
+        return self._before[1], self._before[2]
+
     @classmethod
     def restored(cls, session: Session, edit: Edit, before: tuple[Array, Array]) -> EditCommand:
         """Return the command of a stored edit, which replaced `before`: (n, 52) weights and (n, 8) asked values."""

@@ -20,6 +20,7 @@ from engine.formats.characters.opening import character_of
 from engine.project import ENDING
 from engine.take import Take
 
+CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 Answer = QMessageBox.StandardButton
 CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 

@@ -99,7 +99,7 @@ class MainWindow(QMainWindow):
         self.time = TimeActions(self.session, self.transport, self.filling)
         self.brush, self.value = BrushSection(self.session), ValueSection(self.session)
         self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
-        self.smoothing = SmoothSection(self.session)
+        self.smoothing, self.facts = SmoothSection(self.session), FactsSection(self.session)
         self.spans = SpansSection(self.session, self.filling)
         self.live = LiveSection(self.session, self.keeper.folder)
         self.attached = MediaSection(self.session)
@@ -114,7 +114,7 @@ class MainWindow(QMainWindow):
             *self.retarget.sections,
             self.smoothing,
             self.spans,
-            FactsSection(self.session),
+            self.facts,
             self.attached,
             self.notes,
         )
@@ -197,6 +197,7 @@ class MainWindow(QMainWindow):
         self.transport.changed.connect(self._show_transport)
         self.value.close_here.connect(self.edits.close_here)
         self.value.typed.connect(self.edits.set_value)
+        self.facts.again.connect(self.edits.again)
         self.smoothing.moved.connect(self.edits.preview_smoothing)
         self.smoothing.kept.connect(self.edits.smooth)
         self.smoothing.dropped.connect(self.inference.cancel)
@@ -337,6 +338,8 @@ class MainWindow(QMainWindow):
     def _show_tool(self) -> None:
         for name in TOOLS:
             self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
+        self.actions_by_name["hit_exactly"].setChecked(self.session.exact)
+        self.actions_by_name["rest_follows"].setChecked(self.session.follow)
         self.actions_by_name["show_removed"].setChecked(self.session.shows_removed)
 
     def _wear(self, colours: theme.Palette) -> None:

@@ -66,7 +66,8 @@ class Session(QObject):
     lane : the curve that is worked on, an index into CURVES
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
-    radius_frames, strength, exact : the Drag tool's brush
+    radius_frames, strength : the Drag tool's brush
+    exact, follow : whether edits hit the curve exactly, and whether controls that nobody asked for follow
     shows_removed : whether the Clean tool draws what it would remove
     audio : the recording of the sound, None where there is none, or it is not found
     video : the file of the reference video, likewise
@@ -84,7 +85,7 @@ class Session(QObject):
         super().__init__()
         self.undo = QUndoStack(self)
         self.path: Path | None = None
-        self.strength, self.exact, self.tool = 1.0, False, "drag"
+        self.strength, self.exact, self.follow, self.tool = 1.0, False, True, "drag"
         self.shows_removed = True
         self._restoring = False
         self.character: Character | None = None
@@ -332,7 +333,12 @@ class Session(QObject):
             self.changed.emit(Change.TOOL)
 
     def set_brush(
-        self, *, radius_frames: int | None = None, strength: float | None = None, exact: bool | None = None
+        self,
+        *,
+        radius_frames: int | None = None,
+        strength: float | None = None,
+        exact: bool | None = None,
+        follow: bool | None = None,
     ) -> None:
         """Change the Drag tool."""
         if radius_frames is not None:
@@ -341,6 +347,8 @@ class Session(QObject):
             self.strength = float(np.clip(strength, 0.0, 1.0))
         if exact is not None:
             self.exact = exact
+        if follow is not None:
+            self.follow = follow
         self.changed.emit(Change.TOOL)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -71,8 +71,7 @@ def write_edits(database: sqlite3.Connection, first: int, edits: Iterable[Edit])
     for place, edit in enumerate(edits, first):
         inputs = json.dumps(dict(edit.inputs), default=_plain)
         blobs = pack(edit.weights), names, pack(edit.asked)
-        row = (place, edit.kind, edit.title, inputs, edit.start, len(edit.weights), *blobs)
-        database.execute("INSERT INTO edits VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", row)
+        _insert(database, "edits", (place, edit.kind, edit.title, inputs, edit.start, len(edit.weights), *blobs))
 
 
 def write_marks(database: sqlite3.Connection, marks: Marks) -> None:
@@ -98,18 +97,27 @@ def write_state(database: sqlite3.Connection, contents: Contents) -> None:
 
 def _write_take(database: sqlite3.Connection, take: Take) -> None:
     blobs = pack(take.weights), pack(take.lost), pack(take.rotations)
-    row = (take.name, take.fps, take.start_s, len(take), *blobs)
-    database.execute("INSERT INTO take VALUES (1, ?, ?, ?, ?, ?, ?, ?)", row)
+    _insert(database, "take", (1, take.name, take.fps, take.start_s, len(take), *blobs))
     origin = take.origin
     if isinstance(origin, Origin):
         timecodes = b"\n".join(origin.timecodes)
         lines = len(origin.timecodes), len(timecodes), pack(np.frombuffer(timecodes, "u1"))
         arrays = pack(origin.rows), pack(origin.values), pack(origin.lost)
         how = origin.decimals, origin.newline, int(origin.swapped)
-        database.execute(
-            "INSERT INTO origin VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-            (json.dumps(origin.header), *lines, *arrays, *how),
-        )
+        _insert(database, "origin", (1, json.dumps(origin.header), *lines, *arrays, *how))
+
+
+def _insert(database: sqlite3.Connection, table: str, row: Sequence[object]) -> None:
+    """Add a row with its number first; room is made for what comes in pieces, which is then filled piece by piece."""
+    marks = ["zeroblob(?)" if isinstance(value, list) else "?" for value in row]
+    values = [sum(map(len, value)) if isinstance(value, list) else value for value in row]
+    database.execute(f"INSERT INTO {table} VALUES ({', '.join(marks)})", values)
+    columns = [column for column, *_ in database.execute(f"SELECT * FROM {table} LIMIT 0").description]
+    for column, value in zip(columns, row, strict=True):
+        if isinstance(value, list):
+            with database.blobopen(table, column, row[0]) as blob:  # type: ignore[arg-type]
+                for piece in value:
+                    blob.write(piece)
 
 
 def _read_take(database: sqlite3.Connection, budget: Budget) -> Take:

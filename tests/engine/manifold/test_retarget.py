@@ -14,10 +14,11 @@ from engine.manifold.retarget import (
     from_labels,
     retarget_points,
     retarget_weights,
+    scaled_to,
     suggest_frames,
 )
 from engine.performance import demo
-from engine.take import Take
+from engine.take import SHAPE_INDEX, SHAPES, Take
 
 
 def landmarks(frames: slice) -> tuple[np.ndarray, np.ndarray]:
@@ -92,6 +93,29 @@ def test_weights_of_a_target_with_shapes() -> None:
     made = retarget_weights(take, {f: halved[f] for f in suggest_frames(take.weights, 20)})
     assert np.abs(made.weights - halved).mean() < 0.1 * np.abs(take.weights - halved).mean()
     assert len(made) == len(take) and made.fps == take.fps
+
+
+def test_a_few_labels_tell_the_gain_of_every_point() -> None:
+    """Over a source that moves everywhere: gains are found to within their ridge, and no gain is no change."""
+    rng = np.random.default_rng(3)
+    rest, away = rng.normal(size=(17, 3)), rng.normal(size=(200, 17, 3))
+    target = rest + away * rng.uniform(0.4, 1.8, (17, 3))
+    frames = np.arange(0, 200, 20)
+    found = scaled_to(rest + away, rest, frames, target[frames])
+    assert np.abs(found - target).mean() < 0.2 * np.abs(rest + away - target).mean()
+    np.testing.assert_allclose(scaled_to(target, rest, frames, target[frames]), target, atol=1e-12)
+
+
+def test_a_label_may_name_some_shapes_and_leaves_the_others_as_they_are() -> None:
+    take = read_take(demo.BUNDLED)
+    jaw = SHAPE_INDEX["jawOpen"]
+    frames = suggest_frames(take.weights, 8)
+    made = retarget_weights(take, {frame: {"jawOpen": 0.5 * take.weights[frame, jaw]} for frame in frames})
+    others = np.arange(len(SHAPES)) != jaw
+    np.testing.assert_allclose(made.weights[:, others], np.clip(take.weights[:, others], 0, None), atol=1e-3)
+    assert np.abs(made.weights[:, jaw] - 0.5 * take.weights[:, jaw]).mean() < 0.02
+    with pytest.raises(EditError, match="no shape called 'grin'"):
+        retarget_weights(take, {3: {"grin": 1.0}})
 
 
 @pytest.mark.parametrize(
