@@ -299,7 +299,7 @@ class MainWindow(QMainWindow):
         if application is not None:
             application.removeEventFilter(self)
         self.transport.run(0.0)
-        self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
+        self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.keeper.close()
         self.inference.close()
         self.media.close()
