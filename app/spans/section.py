@@ -95,6 +95,9 @@ class SpansSection(Section):
         self.style_box.setAccessibleName("Fill with")
         self.curves = QCheckBox("Follow my curves")
         self.curves.setToolTip("Let the fill follow what you dragged or drew inside the span.")
+        self.visemes = QCheckBox("Say the visemes")
+        self.visemes.setToolTip("Let the mouth say what the visemes lane does over the span.")
+        self.visemes.setChecked(True)
         self.guide_button = QPushButton("Guide by a take…")
         self.guide_button.setToolTip("Another take of the same rate, such as a rough one from a webcam.")
         self.guide_shift = QSpinBox(minimum=-999_999, maximum=999_999)
@@ -108,6 +111,7 @@ class SpansSection(Section):
             self.region,
             self.style_box,
             self.curves,
+            self.visemes,
             self.guide_button,
             self._shift_row,
             self.fill_button,
@@ -162,6 +166,7 @@ class SpansSection(Section):
             guide=self._guide,
             guide_offset=self.guide_shift.value(),
             keep_curves=self.curves.isChecked(),
+            keep_visemes=self.visemes.isChecked(),
         )
 
     def _set_region(self, _: int) -> None:
@@ -185,7 +190,7 @@ class SpansSection(Section):
         self._shift_row.setVisible(self._guide is not None)
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.MARKS | Change.SELECTION):
+        if change & (Change.TAKE | Change.MARKS | Change.SELECTION | Change.VISEMES):
             self._show_list()
             self._show()
 
@@ -223,6 +228,7 @@ class SpansSection(Section):
         self.fill_button.setText("Filling…" if filling.busy else "Fill")
         self.fill_button.setEnabled(not filling.busy)
         if chosen is not None:
+            self.visemes.setVisible(bool(filling.said(chosen)))
             names = {region: title for title, region in REGIONS.items()}
             with QSignalBlocker(self.region):
                 self.region.setCurrentText(names[chosen.region])
