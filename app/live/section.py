@@ -65,6 +65,7 @@ class LiveSection(Section):
         self.row("Port", self.port)
         self.subjects = QComboBox()
         self.subjects.setAccessibleName("Subject")
+        self.subjects.setPlaceholderText("nobody is sending yet")
         self.subjects.activated.connect(self._choose_subject)
         self.column.addWidget(self.subjects)
         self.strength = slider(0, 100)
