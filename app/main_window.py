@@ -295,7 +295,7 @@ class MainWindow(QMainWindow):
         """End the threads; the window cannot be used after."""
         self._keyboard.let_go()
         self.transport.run(0.0)
-        self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
+        self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.keeper.close()
         self.inference.close()
         self.media.close()
