@@ -38,5 +38,5 @@ class Hints(QLabel):
     def _fit(self) -> None:
         self.ensurePolished()  # the style sheet's font is not there before
         shown = [BETWEEN.join(self._hints[:count]) for count in range(len(self._hints), 0, -1)]
-        room = self.width() - 2 * GRID
+        room = self.width() - GRID
         self.setText(next((text for text in shown if self.fontMetrics().horizontalAdvance(text) <= room), ""))

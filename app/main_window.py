@@ -352,6 +352,9 @@ class MainWindow(QMainWindow):
         if change & (Change.TAKE | Change.MARKS | Change.MEDIA):
             for kind in MEDIA:
                 self.actions_by_name[f"detach_{kind}"].setEnabled(self.session.marks.medium(kind) is not None)
+        if change & (Change.TAKE | Change.VISEMES):
+            for name in ("shift_visemes", "restore_visemes", "remove_visemes"):
+                self.actions_by_name[name].setEnabled(self.session.visemes is not None)
         if change & (Change.TAKE | Change.MARKS | Change.SAVED):
             self._show_hints()
         if change & Change.TOOL:

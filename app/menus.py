@@ -79,7 +79,7 @@ class Menus(QObject):
     def show_hints(self, *, changed: bool, saved: bool, hatched: bool) -> None:
         """Tell how to begin; after the first edit how to take it back, compare and save it; then nothing."""
         undo, save, play, fill = (self.actions[name].shortcut().toString() for name in ("undo", "save", "play", "fill"))
-        begin = ["Drag a curve up or down", f"{play} plays", *([f"{fill} fills what is hatched"] if hatched else [])]
+        begin = ["Drag a curve", f"{play} plays", *([f"{fill} fills what is hatched"] if hatched else [])]
         edited = [f"{undo} takes it back", f"{save} saves", "hold B for before"]
         self.hints.tell(begin if not changed else [] if saved else edited)
 

@@ -109,7 +109,6 @@ QCheckBox {{ border: 1px solid transparent; border-radius: 4px; padding: 2px; sp
 QDoubleSpinBox, QSpinBox, QLineEdit, QComboBox, QPlainTextEdit, QListView, QTreeView, QTableView {{
   background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; padding: 3px 6px;
   selection-background-color: {c.accent}; selection-color: {c.on_accent}; }}
-QAbstractSpinBox QLineEdit {{ border: none; padding: 0 4px; background: transparent; }}
 QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
 QComboBox::drop-down {{ border: none; width: 20px; }}
 QComboBox::down-arrow {{ image: url("{ICONS}/down.svg"); width: 10px; height: 6px; }}

@@ -71,7 +71,7 @@ class LiveSection(Section):
         self.strength = slider(0, 100)
         self.strength.setValue(100)
         self.strength.valueChanged.connect(self._set_strength)
-        self.column.addWidget(quiet("raw … clean"))
+        self.column.addWidget(quiet("Left as it comes, right cleaned"))
         self.column.addWidget(self.strength)
         self.listen_button, self.record_button = QPushButton("Listen"), QPushButton("Record")
         self.listen_button.setProperty("primary", True)

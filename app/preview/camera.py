@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.take import Array
 
-FACE_WIDTH = 0.78  # of the head's: where there is little room the ears go, and the face is shown larger
+FACE_WIDTH = 0.84  # of the head's: where there is little room the ears go, and the face is shown larger
 FIELD_OF_VIEW_DEG = 18.0  # a portrait lens: wider ones enlarge the nose
 
 

@@ -24,7 +24,7 @@ from app.timeline.visemes import VISEMES_PX, Place
 from app.timeline.waveform import draw_waveform
 from engine.take import timecode
 
-RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 76
+RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 66
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 SLACK_PX = 3  # a press that moves no farther is a click
 STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
