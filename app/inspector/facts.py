@@ -76,7 +76,7 @@ class FactsSection(Section):
         moved = int((session.take.weights != session.original.weights).any(axis=1).sum())
         if not moved:
             return "Every frame is as recorded."
-        return f"{moved:,} of {frames:,} frames changed, the rest is as recorded to the bit.\n{LEGEND}"
+        return f"{moved:,} of {frames:,} frames changed, the rest is as recorded, bit for bit.\n{LEGEND}"
 
 
 def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, exact: bool) -> list[str]:

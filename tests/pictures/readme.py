@@ -47,6 +47,7 @@ def script(window: MainWindow, path: Path) -> Iterator[Callable[[], bool]]:
         yield still
     window.status["speed"].clear()  # of the machine that drew it, not of the reader's
     window.grab().save(str(path))
+    QTest.keyClick(window, Qt.Key.Key_Escape)  # nothing was changed, so closing asks nothing
     QTest.mouseRelease(area, left, plain, at)
     yield still
 
@@ -69,8 +70,7 @@ def main() -> None:
                 waiting[0] = next(steps)
             except StopIteration:
                 timer.stop()
-                window.shut_down()
-                application.quit()
+                window.close()
 
     timer = QTimer(interval=STEP_MS, timeout=on)
     timer.start()
