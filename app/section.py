@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QLabel, QLineEdit, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
 from app.session import Session
 from app.theme import GRID
@@ -43,8 +43,6 @@ class Section(QWidget):
         widget.setAccessibleName(title)
         if isinstance(widget, QAbstractSpinBox):
             widget.setFixedWidth(NUMBER_PX)
-            for entry in widget.findChildren(QLineEdit):  # whose style sheet moves no text
-                entry.setTextMargins(GRID // 2, 0, 0, 0)
 
     def side_by_side(self, *widgets: QWidget) -> None:
         """Add widgets in one row."""

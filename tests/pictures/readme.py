@@ -47,7 +47,7 @@ def script(window: MainWindow, path: Path) -> Iterator[Callable[[], bool]]:
         yield still
     window.status["speed"].clear()  # of the machine that drew it, not of the reader's
     window.grab().save(str(path))
-    QTest.keyClick(window, Qt.Key.Key_Escape)  # nothing was changed, so closing asks nothing
+    window.actions_by_name["cancel"].trigger()  # nothing was changed, so closing asks nothing
     QTest.mouseRelease(area, left, plain, at)
     yield still
 
