@@ -157,10 +157,8 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             drafted = session.draft_curve(lane.key)
             if draft is not None and drafted is not None:
                 reached = _overlaid(reached, start, drafted, draft.start)
-                wanted = draft.asked[:, lane.curve.column]
-                # lanes that nobody asked anything of hold where they are in the draft, which is no wish
-                if asked is not None and (wanted != session.curve(lane.key)[draft.start : draft.stop]).any():
-                    asked = _overlaid(asked, start, wanted, draft.start)
+                if asked is not None:
+                    asked = _overlaid(asked, start, draft.asked[:, lane.curve.column], draft.start)
             lane.draw_edit(asked, reached, start)
 
     def _draw_removed(self) -> None:
