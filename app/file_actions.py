@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.keeper import Keeper
@@ -20,7 +22,6 @@ from engine.formats.characters.opening import character_of
 from engine.project import ENDING
 from engine.take import Take
 
-CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 Answer = QMessageBox.StandardButton
 CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 
@@ -50,7 +51,8 @@ class FileActions(QObject):
     def load(self, path: Path, *_: object) -> bool:
         """Open a take or a project; what is open stays as it was where the file cannot be read."""
         try:
-            take = None if path.suffix.lower() == ENDING else read_take(path)
+            with _waiting():
+                take = None if path.suffix.lower() == ENDING else read_take(path)
         except EngineError as error:
             self.told.emit(error.sentence, error.advice)
             return False
@@ -61,10 +63,11 @@ class FileActions(QObject):
     def _open(self, path: Path, take: Take | None) -> None:
         """Open a take that was read, or a project, in place of what is open."""
         try:
-            if take is None:
-                self._keeper.open(path)
-            else:
-                self._session.open(take, path)
+            with _waiting():
+                if take is None:
+                    self._keeper.open(path)
+                else:
+                    self._session.open(take, path)
         except EngineError as error:
             self.told.emit(error.sentence, error.advice)
             return
@@ -202,3 +205,13 @@ class FileActions(QObject):
         path = self._session.path
         folder = path.parent if path is not None and path != demo.BUNDLED else Path.home()
         return str(folder / name)
+
+
+@contextmanager
+def _waiting() -> Iterator[None]:
+    """Show by the pointer that the program is at work: an hour takes seconds to open."""
+    QGuiApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
+    try:
+        yield
+    finally:
+        QGuiApplication.restoreOverrideCursor()

@@ -91,6 +91,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT, self._draw_edits),
             (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT | kinds.TOOL, self._draw_removed),
             (kinds.TAKE | kinds.LANES | kinds.PLAYHEAD | kinds.CURVES | kinds.DRAFT, self._show_playhead),
+            (kinds.LANES | kinds.CURVES | kinds.DRAFT, self.tool.leave),  # what it showed is not there any more
             (kinds.DRAFT, self.tool.refresh),
             (kinds.TAKE | kinds.TOOL, self._take_up_tool),
             (kinds.TAKE | kinds.LANES | kinds.TOOL | kinds.VIEW | kinds.SELECTION | kinds.MARKS, self._show_marks),
@@ -109,6 +110,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             if tool is not self.tool and tool.busy:
                 tool.cancel()
         self.show_handles(QRectF(), [])
+        self.tool.leave()
         self.setCursor(self.tool.cursor)
 
     def _lay_lanes(self) -> None:

@@ -156,6 +156,9 @@ class SpansSection(Section):
     def fill(self) -> None:
         """Fill the chosen span, or the selection."""
         span = self.chosen or (Span(*self.session.selection) if self.session.selection else None)
+        spans = self.session.marks.spans
+        if span is None and len(spans) == 1:  # there is only one that can be meant
+            self._go_to(span := spans[0])
         if span is None:
             self.refused.emit("No span is chosen.", "Click one in the spans lane, or drag there to mark one.")
             return

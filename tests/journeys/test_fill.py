@@ -75,6 +75,7 @@ def test_dropping_a_fill_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWin
 
 
 def test_a_fill_without_a_span_says_what_to_do(qtbot: QtBot, window: MainWindow) -> None:
+    window.session.set_marks(replace(window.session.marks, spans=()))
     QTest.keyClick(window, Qt.Key.Key_F)
     assert window.notices.isVisible() and "span" in window.notices.text.text()
     assert Span(1, 2) not in window.session.marks.spans
