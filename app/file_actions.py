@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Qt, Signal
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.keeper import Keeper
+from app.opening import Opened, Opening, Wish
 from app.playback import media
 from app.playback.media import Media
 from app.session import Session
 from app.settings import Settings
 from engine.errors import EngineError
-from engine.formats import FORMATS, cues, read_take, write_take
+from engine.formats import FORMATS, cues, write_take
 from engine.formats.characters.opening import character_of
 from engine.project import ENDING
 from engine.take import Take
@@ -45,35 +44,55 @@ class FileActions(QObject):
     def __init__(self, session: Session, keeper: Keeper, media: Media, settings: Settings, window: QWidget) -> None:
         super().__init__()
         self._session, self._keeper, self._media = session, keeper, media
+        self.opening = Opening(session)
+        self._newest: Wish | None = None  # of those that were read
+        self._reopens = False
+        self.opening.done.connect(self._confirm)
+        self.opening.changed.connect(self._keep_again)
+        self.opening.failed.connect(self.told)
         self._settings, self._window = settings, window
         keeper.saved.connect(settings.remember)
 
-    def load(self, path: Path, *_: object) -> bool:
-        """Open a take or a project; what is open stays as it was where the file cannot be read."""
-        try:
-            with _waiting():
-                take = None if path.suffix.lower() == ENDING else read_take(path)
-        except EngineError as error:
-            self.told.emit(error.sentence, error.advice)
-            return False
-        before = self._session.original
-        self.when_safe(partial(self._open, path, take))
-        return self._session.original is not before
+    def load(self, path: Path, *_: object) -> None:
+        """Read a take or a project, and open it when it is read; returns at once.
 
-    def _open(self, path: Path, take: Take | None) -> None:
-        """Open a take that was read, or a project, in place of what is open."""
-        try:
-            with _waiting():
-                if take is None:
-                    self._keeper.open(path)
-                else:
-                    self._session.open(take, path)
-        except EngineError as error:
-            self.told.emit(error.sentence, error.advice)
+        `opened` follows, or `told` where the file cannot be read: what is open then stays as it was.
+        """
+        if self._keeper.holds(path):
+            self.when_safe(partial(self._reopen, path))
+        else:
+            self.opening.read(path)
+
+    def _reopen(self, path: Path) -> None:
+        self._keeper.release()
+        self._reopens = True
+        self.opening.read(path)
+
+    def _keep_again(self) -> None:
+        """Keep what is open as unsaved work where its project could not be read anew."""
+        if self._reopens and self.opening.path is None:
+            self._reopens = False
+            self._keeper.keep()
+
+    def _confirm(self, opened: Opened) -> None:
+        """Ask for unsaved edits, then open what was read."""
+        self._newest, self._reopens = opened.wish, False
+        self.when_safe(partial(self._open, opened), opened.drop)
+
+    def _open(self, opened: Opened) -> None:
+        """Open what was read in place of what is open."""
+        if opened.wish is not self._newest or self.opening.path is not None:
+            opened.drop()  # while its predecessor was being saved, something else was chosen
             return
-        self._settings.remember(path)
+        path, left_over = opened.wish.path, opened.wish.left_over
+        if opened.project is not None:
+            self._keeper.open(opened)
+        else:
+            self._session.open(opened.take, path, opened.measured[0])
+        if not left_over:
+            self._settings.remember(path)
         self.opened.emit()
-        if take is None and self._keeper.path is None:
+        if opened.project is not None and opened.project.read_only:
             self.told.emit(
                 f"{path.name} cannot be written here; your edits are kept as unsaved work.",
                 "Save it under another name.",
@@ -149,12 +168,12 @@ class FileActions(QObject):
         except EngineError as error:
             self.told.emit(error.sentence, error.advice)
 
-    def when_safe(self, then: Callable[[], None]) -> None:
+    def when_safe(self, then: Callable[[], None], otherwise: Callable[[], None] = lambda: None) -> None:
         """Do what closes the open take: at once, or when its edits are saved, or never, as the user says."""
-        if not self._keeper.when_idle(partial(self._ask, then)):
+        if not self._keeper.when_idle(partial(self._ask, then, otherwise)):
             self.told.emit(f"{self._session.name} is being saved; then it is closed.", "You may go on working.")
 
-    def _ask(self, then: Callable[[], None]) -> None:
+    def _ask(self, then: Callable[[], None], otherwise: Callable[[], None]) -> None:
         if not self._session.edited:
             then()
             return
@@ -168,7 +187,9 @@ class FileActions(QObject):
             self._keeper.forget()
             then()
         elif answer == Answer.Save and self.save():
-            self.when_safe(then)
+            self.when_safe(then, otherwise)
+        else:
+            otherwise()
 
     def offer_left_over(self) -> None:
         """Offer the work of a program that ended early."""
@@ -183,15 +204,14 @@ class FileActions(QObject):
         discard = box.addButton("Discard", QMessageBox.ButtonRole.DestructiveRole)
         box.addButton("Later", QMessageBox.ButtonRole.RejectRole)
         box.exec()
-        try:
-            if box.clickedButton() is restore:
-                self._keeper.recover(left[0])
-                self.opened.emit()
-            elif box.clickedButton() is discard:
+        if box.clickedButton() is restore:
+            self.opening.read(left[0].path, left_over=True)
+        elif box.clickedButton() is discard:
+            try:
                 for entry in left:
                     self._keeper.discard(entry)
-        except EngineError as error:
-            self.told.emit(error.sentence, error.advice)
+            except EngineError as error:
+                self.told.emit(error.sentence, error.advice)
 
     def _save_to(self, path: Path) -> bool:
         self._media.settle_in(path.parent)
@@ -205,13 +225,3 @@ class FileActions(QObject):
         path = self._session.path
         folder = path.parent if path is not None and path != demo.BUNDLED else Path.home()
         return str(folder / name)
-
-
-@contextmanager
-def _waiting() -> Iterator[None]:
-    """Show by the pointer that the program is at work: an hour takes seconds to open."""
-    QGuiApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
-    try:
-        yield
-    finally:
-        QGuiApplication.restoreOverrideCursor()

@@ -16,7 +16,7 @@ import platformdirs
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, Signal
 
 from app.background import LatestWins
-from app.commands import restored
+from app.opening import Opened
 from app.session import Change, Session
 from app.settings import NAME
 from engine import project
@@ -145,14 +145,23 @@ class Keeper(QObject):
 
     # --- saving and opening
 
-    def open(self, path: Path) -> None:
-        """Open a project in the session, undo history included; what is open stays where it cannot be read.
+    def open(self, opened: Opened) -> None:
+        """Show a project that was read, undo history included, and let each step go there from now on.
 
-        Raises `EngineError`. One that cannot be written is opened all the same, as unsaved work.
+        One that cannot be written is shown all the same, as unsaved work; so is what an earlier start left.
         """
-        if self.path is not None and path.exists() and path.samefile(self.path):
-            self._detach(delete=False)  # a file is open once: what is in memory is in it
-        self._adopt(Project.open(path), path, saved=True)
+        left_over = opened.wish.left_over
+        self._adopt(opened, None if left_over else opened.wish.path, saved=not left_over)
+        if left_over:
+            self._session.undo.resetClean()
+
+    def release(self) -> None:
+        """Let go of the project, so that it can be read anew; what is open is in memory alone until `keep` or `open`."""
+        self._detach(delete=False)
+
+    def holds(self, path: Path) -> bool:
+        """Whether a path is the project that is open: a file is open once, and what is in memory is in it."""
+        return self.path is not None and path.exists() and path.samefile(self.path)
 
     def save_as(self, path: Path) -> None:
         """Make a project of the session at a path, whole or not at all; from then on each step goes there.
@@ -200,11 +209,6 @@ class Keeper(QObject):
             length = timecode(summary.frames / summary.fps, summary.fps)
             found.append(LeftOver(path, summary.name, summary.edits, summary.changed, length))
         return sorted(found, key=lambda entry: entry.changed, reverse=True)
-
-    def recover(self, left: LeftOver) -> None:
-        """Open unsaved work in the session, where it goes on being unsaved; raises `EngineError`."""
-        self._adopt(Project.open(left.path), None, saved=False)
-        self._session.undo.resetClean()
 
     def discard(self, left: LeftOver) -> None:
         """Remove unsaved work for good; raises `EngineError` when another program has taken it."""
@@ -292,17 +296,16 @@ class Keeper(QObject):
             for then in waiting:
                 then()
 
-    def _adopt(self, opened: Project, path: Path | None, *, saved: bool) -> None:
+    def _adopt(self, opened: Opened, path: Path | None, *, saved: bool) -> None:
+        assert opened.project is not None and opened.state is not None
         self._detach(delete=False)
-        contents = opened.contents
-        state = project.replay(contents)
         self._opening = True
         try:
-            self._session.restore(contents, path, restored(self._session, contents, state), state)
+            self._session.restore(opened.project.contents, path, opened.steps, opened.state, opened.measured)
         finally:
             self._opening = False
-        if not opened.read_only:
-            self._kept = _Kept(opened, saved)
+        if not opened.project.read_only:
+            self._kept = _Kept(opened.project, saved)
 
     def _detach(self, *, delete: bool) -> None:
         """Go on without a file; unsaved work is removed if it is to be deleted, a project of the user's never is."""

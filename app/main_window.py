@@ -86,7 +86,7 @@ class MainWindow(QMainWindow):
         self.media = Media(self.session, self.transport, settings=self.settings)
         self.files = FileActions(self.session, self.keeper, self.media, self.settings, self)
         self.sound = MediaActions(self.session, self.media, self)
-        self.status = StatusBar(self.session, self.keeper, self.media)
+        self.status = StatusBar(self.session, self.keeper, self.files.opening, self.media)
         self.notices, self.missing = Notices(), MissingMedia()
         self.preview = PreviewPanel(self.session, self.inference)
         self.reference = ReferencePanel(self.session)
@@ -250,9 +250,9 @@ class MainWindow(QMainWindow):
 
     # --- opening and closing
 
-    def load(self, path: Path) -> bool:
-        """Open a take or a project; returns whether it is open now."""
-        return self.files.load(path)
+    def load(self, path: Path) -> None:
+        """Read a take or a project beside what is open, and open it when it is read; returns at once."""
+        self.files.load(path)
 
     def _show_opened(self) -> None:
         self.transport.run(0.0)
@@ -296,6 +296,7 @@ class MainWindow(QMainWindow):
         self._keyboard.let_go()
         self.transport.run(0.0)
         self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
+        self.files.opening.close()
         self.keeper.close()
         self.inference.close()
         self.media.close()

@@ -92,12 +92,13 @@ class Session(QObject):
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
 
-    def open(self, take: Take, path: Path | None) -> None:
-        """Replace everything by a take."""
+    def open(self, take: Take, path: Path | None, measured: Array | None = None) -> None:
+        """Replace everything by a take, whose controls may have been measured before, (frames, 8) in mm."""
         self.take = self.original = take
         self.path = path
-        measured = bundled_measurer().measure(take.weights)
-        measured.flags.writeable = False
+        if measured is None:
+            measured = bundled_measurer().measure(take.weights)
+            measured.flags.writeable = False
         self.controls = self.original_controls = measured
         self.asked = np.full_like(measured, np.nan)
         self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
@@ -118,12 +119,22 @@ class Session(QObject):
         self.undo.clear()
         self.changed.emit(Change.TAKE | Change.CHARACTER if other_head else Change.TAKE)
 
-    def restore(self, contents: Contents, path: Path | None, steps: Iterable[QUndoCommand], state: Replayed) -> None:
-        """Replace everything by what a project holds: its edits as `steps`, which come to `state`."""
+    def restore(
+        self,
+        contents: Contents,
+        path: Path | None,
+        steps: Iterable[QUndoCommand],
+        state: Replayed,
+        measured: tuple[Array, Array],
+    ) -> None:
+        """Replace everything by what a project holds: its edits as `steps`, which come to `state`.
+
+        The controls, (frames, 8) in mm, are `measured` of the original and of that state.
+        """
         self.blockSignals(True)
         self._restoring = True
         try:
-            self.open(contents.original, path)
+            self.open(contents.original, path, measured[0])
             for step in steps:
                 self.undo.push(step)
             self.undo.setIndex(contents.position)
@@ -133,9 +144,7 @@ class Session(QObject):
             self.blockSignals(False)
         self.take, self.asked, self.marks = state.take, state.asked, contents.marks
         self.visemes = state.visemes
-        measured = bundled_measurer().measure(self.take.weights)
-        measured.flags.writeable = False
-        self.controls = measured
+        self.controls = measured[1]
         self.changed.emit(Change.TAKE)
 
     def contents(self) -> Contents:

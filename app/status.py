@@ -3,58 +3,48 @@
 from __future__ import annotations
 
 import numpy as np
-from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QToolButton
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel
 
 from app.keeper import Keeper
+from app.opening import Opening
 from app.playback.media import Media
+from app.progress import Progress
 from app.session import Change, Session
 from app.theme import GRID
 from engine.take import timecode
 
 NAMES = ("take", "rate", "length", "place", "notice", "engine", "sound", "saved", "speed")
 LATENCIES = 20  # that the median is taken of
-SHOWN_AFTER_MS = 150  # a shorter save needs no bar
-BAR_PX, BAR_HEIGHT_PX, STEPS = 96, 8, 1000
 
 
 class StatusBar(QFrame):
-    """Labels by name, and the progress of a save with a button that stops it.
+    """Labels by name, and the progress of a save and of a file that is read, each with a button that stops it.
 
     Parameters
     ----------
-    session, keeper, media : what is told of
+    session, keeper, opening, media : what is told of
     """
 
-    def __init__(self, session: Session, keeper: Keeper, media: Media) -> None:
+    def __init__(self, session: Session, keeper: Keeper, opening: Opening, media: Media) -> None:
         super().__init__()
         self.setProperty("panel", True)
-        self._session, self._keeper, self._media = session, keeper, media
+        self._session, self._keeper, self._opening, self._media = session, keeper, opening, media
         self._latencies_ms: list[float] = []
         self.in_frames = False
         self._labels = {name: QLabel() for name in NAMES}
-        self.bar = QProgressBar(minimum=0, maximum=STEPS, textVisible=False)
-        self.bar.setFixedSize(BAR_PX, BAR_HEIGHT_PX)
-        self.stop = QToolButton()
-        self.stop.setText("✕")
-        self.stop.setFixedSize(2 * BAR_HEIGHT_PX, 2 * BAR_HEIGHT_PX)  # no higher than a line: nothing moves
-        self.stop.setStyleSheet("padding: 0;")
-        self.stop.setToolTip("Stop saving")
-        self.stop.setAccessibleName("Stop saving")
-        self.stop.clicked.connect(keeper.stop_saving)
+        self.saving = Progress("Stop saving", keeper.stop_saving)
+        self.opening = Progress("Stop opening", opening.stop)
         self._lay_out()
         self._labels["engine"].setText("loading networks…")
         self["place"].setToolTip("Minutes, seconds and frames, and the frame counted from 0, at the playhead")
         self["speed"].setToolTip("How long the face took to follow the mouse")
-        self._soon = QTimer(self, singleShot=True, interval=SHOWN_AFTER_MS)
-        self._soon.timeout.connect(self._show_saving)
         session.changed.connect(self._on_change)
         keeper.saving_changed.connect(self._show_saving)
-        keeper.saving_changed.connect(self._soon.start)
-        keeper.progress.connect(self._show_progress)
+        keeper.progress.connect(self.saving.advance)
+        opening.changed.connect(self._show_opening)
+        opening.progress.connect(self.opening.advance)
         keeper.saved.connect(self.show_take)
         media.device_changed.connect(self._show_sound)
-        self._show_saving()
 
     def _lay_out(self) -> None:
         row = QHBoxLayout(self)
@@ -64,11 +54,9 @@ class StatusBar(QFrame):
             label.setProperty("quiet", name != "take")
             row.addWidget(label, 1 if name == "notice" else 0)
             if name == "saved":
-                saving = QHBoxLayout()
-                saving.setSpacing(GRID // 2)
-                saving.addWidget(self.bar)
-                saving.addWidget(self.stop)
-                row.addLayout(saving)
+                row.addWidget(self.saving)
+                row.addWidget(self.opening)
+        row.addStrut(self.saving.sizeHint().height())  # a bar that comes or goes must not move the whole window
 
     def __getitem__(self, name: str) -> QLabel:
         return self._labels[name]
@@ -106,19 +94,26 @@ class StatusBar(QFrame):
             self._show_saved()
 
     def _show_saved(self) -> None:
-        saving = self._keeper.saving
+        saving, opening = self._keeper.saving, self._opening.path
         saved = "saved" if self._keeper.path else ""
         told = "edits not saved yet" if self._session.edited else saved
-        self["saved"].setText(f"saving {saving.name}…" if saving else told)
+        under_way = [f"saving {saving.name}…"] if saving else []
+        under_way += [f"opening {opening.name}…"] if opening else []
+        self["saved"].setText(" ".join(under_way) or told)
 
     def _show_saving(self) -> None:
-        shown = self._keeper.saving is not None and not self._soon.isActive()
-        self.bar.setVisible(shown)
-        self.stop.setVisible(shown)
+        if self._keeper.saving is not None:
+            self.saving.begin()
+        else:
+            self.saving.end()
         self._show_saved()
 
-    def _show_progress(self, share: float) -> None:
-        self.bar.setValue(round(STEPS * share))
+    def _show_opening(self) -> None:
+        if self._opening.path is not None:
+            self.opening.begin()
+        else:
+            self.opening.end()
+        self._show_saved()
 
     def _show_sound(self) -> None:
         attached = self._session.audio is not None

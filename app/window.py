@@ -32,11 +32,17 @@ def start(path: Path | None) -> int:
     application.setStyle("Fusion")  # the style sheet is drawn over it, alike on every desktop
     window = MainWindow(read_take(demo.BUNDLED), demo.BUNDLED)
     _report_to(window)
-    if path is not None and not window.load(path):
-        window.notices.add("The demo take is open instead.")
+    if path is not None:
+        window.files.opening.failed.connect(lambda *_: _tell_what_is_open(window))
+        window.load(path)
     window.show()
     QTimer.singleShot(0, window.files.offer_left_over)
     return application.exec()
+
+
+def _tell_what_is_open(window) -> None:  # type: ignore[no-untyped-def]
+    if window.session.path == demo.BUNDLED:
+        window.notices.add("The demo take is open instead.")
 
 
 def _report_to(window) -> None:  # type: ignore[no-untyped-def]

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QPainter, QPen
+from PySide6.QtGui import QColor, QFont, QPainter
 
 from app.curve_table import CURVES, FIRST_WEIGHT
 from app.curves import removed
-from app.curves.peaks import peaks
+from app.curves.line import Line
+from app.curves.peaks import Rows, Thinned
 from app.curves.removed import Removed
 from app.theme import GRID, Palette
 from engine.take import Array, Mask
@@ -92,21 +93,21 @@ class Lane:
         self.gutter = Gutter(key)
         self.view = pg.ViewBox(enableMouse=False, enableMenu=False, defaultPadding=0.0)
         self.view.setMinimumHeight(28)
-        self.original, self.asked, self.reached = (pg.PlotCurveItem(connect="finite") for _ in range(3))
+        self.original, self.asked, self.reached = (Line() for _ in range(3))
         self.dot = pg.ScatterPlotItem(size=9)
         for item in (self.original, self.asked, self.reached, self.dot):
             self.view.addItem(item, ignoreBounds=True)
         self.removed = Removed(self.view, LEAST_WEIGHT if self.curve.is_weight else LEAST_MM)
         self.range = self._fitted = (0.0, 1.0)
+        self._curves: tuple[Thinned, Thinned, Thinned | None] | None = None  # original, reached, asked
 
     def paint_with(self, colours: Palette) -> None:
         """Take on a theme's colours."""
         weight = self.key >= FIRST_WEIGHT
         colour = QColor(colours.quiet if weight else colours.lanes[self.key % len(colours.lanes)])
-        self.original.setPen(pg.mkPen(colours.faint, width=1))
-        self.asked.setPen(QPen(QColor(colours.text), 1, Qt.PenStyle.DashLine))
-        self.asked.opts["pen"].setCosmetic(True)
-        self.reached.setPen(pg.mkPen(colour, width=1))
+        self.original.set_pen(pg.mkPen(colours.faint, width=1))
+        self.asked.set_pen(pg.mkPen(colours.text, width=1, style=Qt.PenStyle.DashLine))
+        self.reached.set_pen(pg.mkPen(colour, width=1))
         self.removed.paint_with(colours)
         self.dot.setBrush(pg.mkBrush(colour))
         self.dot.setPen(pg.mkPen(colours.text, width=1))
@@ -147,15 +148,27 @@ class Lane:
         """Show frames between two bounds."""
         self.view.setXRange(first, last, padding=0)
 
-    def draw_original(self, visible: Array, start: int) -> None:
-        """Draw the curve as opened, visible frames only, (n,) from `start`."""
-        self.original.setData(*peaks(visible, start, self._columns))
+    def take_curves(self, original: Array, reached: Array, asked: Array | None, *, touched: tuple[int, int]) -> None:
+        """Show other curves, (frames,) each; where the original is the same one, the rest differs in `touched` at most."""
+        if self._curves is not None and self._curves[0].stands_for(original):
+            for thinned, curve in zip(self._curves[1:], (reached, asked), strict=True):
+                if thinned is not None and curve is not None:
+                    thinned.changed_to(curve, touched)
+        else:
+            self._curves = Thinned(original), Thinned(reached), None if asked is None else Thinned(asked)
 
-    def draw_edit(self, asked: Array | None, reached: Array, start: int) -> None:
-        """Draw what was asked, if anything, and what the face does, visible frames only, (n,) each from `start`."""
+    def draw_original(self, visible: tuple[int, int]) -> None:
+        """Draw the curve as opened, a half-open range of frames."""
+        assert self._curves is not None
+        self.original.set_points(*self._curves[0].peaks(*visible, self._columns))
+
+    def draw_edit(self, visible: tuple[int, int], draft: Rows | None = None, draft_asked: Rows | None = None) -> None:
+        """Draw what was asked, if anything, and what the face does, with a draft over them."""
+        assert self._curves is not None
+        _, reached, asked = self._curves
         if asked is not None:
-            self.asked.setData(*peaks(asked, start, self._columns))
-        self.reached.setData(*peaks(reached, start, self._columns))
+            self.asked.set_points(*asked.peaks(*visible, self._columns, draft_asked))
+        self.reached.set_points(*reached.peaks(*visible, self._columns, draft))
 
     def draw_removed(self, taken_off: Array, start: int, *, kept: Mask, visible: tuple[int, int]) -> None:
         """Draw what cleaning takes off, (n,) from `start`, at the foot of the lane; `kept` are frames with a face."""

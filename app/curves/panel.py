@@ -16,7 +16,6 @@ from app.curves.tools.base import Tool
 from app.inference import Inference
 from app.session import Change, Session
 from app.theme import GRID, Palette
-from engine.take import Array
 
 ACTIVE_STRETCH, STRETCH = 24, 10
 WHEEL_STEP = 1.2
@@ -85,6 +84,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         kinds = Change
         for cause, step in (
             (kinds.TAKE | kinds.LANES, self._lay_lanes),
+            (kinds.TAKE | kinds.LANES | kinds.CURVES, self._take_curves),
             (kinds.TAKE | kinds.LANES | kinds.CURVES, self._fit_values),
             (kinds.TAKE | kinds.LANES | kinds.LANE, self._arrange),
             (kinds.TAKE | kinds.LANES | kinds.VIEW, self._show_frames),
@@ -124,7 +124,17 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             lane.paint_with(self._colours)
             self.ci.addItem(lane.gutter, row, 0)
             self.ci.addItem(lane.view, row, 1)
+        self._take_curves()  # growing draws them already
         self.setMinimumHeight(MIN_LANE_PX * len(self.lanes))
+
+    def _take_curves(self) -> None:
+        for lane in self.lanes:
+            lane.take_curves(
+                self.session.original_curve(lane.key),
+                self.session.curve(lane.key),
+                self.session.asked_curve(lane.key),
+                touched=self.session.touched,
+            )
 
     def _fit_values(self) -> None:
         session = self.session
@@ -145,21 +155,17 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         start, stop = on_screen(len(self.session.take), self.session.view)
         for lane in self.lanes:
             lane.show_frames(*self.session.view)
-            lane.draw_original(self.session.original_curve(lane.key)[start:stop], start)
+            lane.draw_original((start, stop))
 
     def _draw_edits(self) -> None:
         session, draft = self.session, self.session.draft
         start, stop = on_screen(len(session.take), session.view)
         for lane in self.lanes:
-            reached = session.curve(lane.key)[start:stop]
-            asked = session.asked_curve(lane.key)
-            asked = None if asked is None else asked[start:stop]
             drafted = session.draft_curve(lane.key)
-            if draft is not None and drafted is not None:
-                reached = _overlaid(reached, start, drafted, draft.start)
-                if asked is not None:
-                    asked = _overlaid(asked, start, draft.asked[:, lane.curve.column], draft.start)
-            lane.draw_edit(asked, reached, start)
+            if draft is None or drafted is None:
+                lane.draw_edit((start, stop))
+            else:
+                lane.draw_edit((start, stop), (drafted, draft.start), (draft.asked[:, lane.curve.column], draft.start))
 
     def _draw_removed(self) -> None:
         session, draft = self.session, self.session.draft
@@ -293,13 +299,3 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         if self.isVisible():
             self._show_frames()
             self._draw_edits()
-
-
-def _overlaid(visible: Array, start: int, rows: Array, rows_start: int) -> Array:
-    """Return visible, (n,) from frame `start`, with rows from `rows_start` over it."""
-    first, last = max(start, rows_start), min(start + len(visible), rows_start + len(rows))
-    if first >= last:
-        return visible
-    merged = visible.copy()
-    merged[first - start : last - start] = rows[first - rows_start : last - rows_start]
-    return merged

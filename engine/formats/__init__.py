@@ -17,7 +17,7 @@ class Format:
 
     title: str
     endings: tuple[str, ...]
-    read: Callable[[Path], Take]
+    read: Callable[[Path, Callable[[float], None] | None], Take]
     write: Callable[[Take, Path], None]
 
 
@@ -33,10 +33,11 @@ def format_of(path: Path) -> Format:
     raise FormatError(f"{path.name} is not a kind of file that a take can be in.", f"Use one of: {known}.")
 
 
-def read_take(path: Path) -> Take:
+def read_take(path: Path, report: Callable[[float], None] | None = None) -> Take:
     """Read a take from any supported file; raises `FormatError` with one plain sentence.
 
-    Of a project, which is saved and not exported, it is the take with the edits in effect.
+    `report` is told what share of the file is read, 0 to 1; what it raises ends the reading. Of
+    a project, which is saved and not exported, it is the take with the edits in effect.
     """
     if path.suffix.lower() == ".retake":
         from engine.project import Project, replay  # here, since projects themselves keep what formats read
@@ -46,7 +47,7 @@ def read_take(path: Path) -> Take:
             return replay(project.contents).take
         finally:
             project.close()
-    return format_of(path).read(path)
+    return format_of(path).read(path, report)
 
 
 def write_take(take: Take, path: Path) -> None:

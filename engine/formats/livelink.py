@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -12,6 +11,8 @@ import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
+from engine.formats.decimals import floats
+from engine.formats.livelink_table import table
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take
 
 ROTATIONS = (
@@ -20,6 +21,7 @@ ROTATIONS = (
     "HeadRoll",
     *(f"{s}Eye{a}" for s in ("Left", "Right") for a in ("Yaw", "Pitch", "Roll")),
 )
+ROTATION_PLACES = {name: index for index, name in enumerate(ROTATIONS)}
 DEFAULT_HEADER = ("Timecode", "BlendshapeCount", *(f"{name[0].upper()}{name[1:]}" for name in SHAPES), *ROTATIONS)
 # Recorded under each other's names by the app (measured: same-side asymmetries correlate negatively without the swap).
 SWAPPED = (("mouthLeft", "mouthRight"), ("jawLeft", "jawRight"))
@@ -30,6 +32,8 @@ MAX_COLUMNS = 1024
 MAX_HEADER_BYTES = 64 * 1024
 MAX_INSERTED_SHARE = 1.0  # more missed frames than recorded ones means that the clock is not to be believed
 FALLBACK_FPS = 30.0
+BLOCK_ROWS = 4096  # of timecodes read at once
+COLON = ord(":")
 EXPECTED = "Retake reads the CSV files that Live Link Face records."
 
 
@@ -66,12 +70,15 @@ class _Clock:
     notices: list[str] = field(default_factory=list)
 
 
-def read(path: Path, *, fps: float | None = None, swap: bool = True) -> Take:
+def read(
+    path: Path, report: Callable[[float], None] | None = None, *, fps: float | None = None, swap: bool = True
+) -> Take:
     """Read a Live Link Face CSV.
 
     Parameters
     ----------
     path : the file
+    report : is told now and then what share of the file is read; what it raises ends the reading
     fps : frame rate to use instead of the one its timecodes tell
     swap : exchange left and right of mouth and jaw, which the app records under each other's names
 
@@ -79,15 +86,17 @@ def read(path: Path, *, fps: float | None = None, swap: bool = True) -> Take:
     ------
     FormatError : with file, row and column, where the file is not such a take
     """
-    header, lines, newline = _lines(path)
+    content = _content(path)
+    header, begin = _header(content, path)
+    newline = b"\r\n" if b"\r\n" in content[:MAX_HEADER_BYTES] else b"\n"
     columns = _columns(header, path)
-    timecodes, values, lost = _table(lines, len(header), path)
+    timecodes, values, lost = table(content, begin, header, path, report)
     if lost.all():
         raise FormatError(f"{path.name} holds no frame with a face.", "The tracker lost the face in every row.")
     _require_finite(values, header, path)
     clock = _clock(timecodes, fps)
     take_weights, take_lost, rotations = _resample(values, lost, clock, columns, swap=swap)
-    decimals = _decimals(lines, lost)
+    decimals = _decimals(content, begin)
     origin = Origin(tuple(header), tuple(timecodes), clock.rows, values, lost, decimals, newline, swap)
     take = Take(
         weights=take_weights,
@@ -182,30 +191,28 @@ def _recorded_name(shape: str, *, swapped: bool) -> str:
     return shape
 
 
-def _lines(path: Path) -> tuple[list[str], list[bytes], bytes]:
+def _content(path: Path) -> bytes:
     try:
         content = path.read_bytes()
     except OSError as error:
         raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
-    if not content.strip():
+    if not content or content.isspace():
         raise FormatError(f"{path.name} is empty.", EXPECTED)
-    content = content.removeprefix(b"\xef\xbb\xbf")
-    newline = b"\r\n" if b"\r\n" in content[:MAX_HEADER_BYTES] else b"\n"
-    first, _, rest = content.partition(b"\n")
-    if len(first) > MAX_HEADER_BYTES or first.count(b",") >= MAX_COLUMNS:
+    return content.removeprefix(b"\xef\xbb\xbf")
+
+
+def _header(content: bytes, path: Path) -> tuple[list[str], int]:
+    """Return the names of the columns, and where the row after them begins."""
+    end = content.find(b"\n") % (len(content) + 1)
+    if end > MAX_HEADER_BYTES or content.count(b",", 0, end) >= MAX_COLUMNS:
         raise FormatError(f"{path.name} has too many columns in its first row.", EXPECTED)
     try:
-        header = [cell.strip() for cell in first.decode("utf-8").split(",")]
+        header = [cell.strip() for cell in content[:end].decode("utf-8").split(",")]
     except UnicodeDecodeError:
         raise FormatError(f"{path.name} is not a text file.", EXPECTED) from None
     if "\x00" in header[0]:
         raise FormatError(f"{path.name} is not a text file.", EXPECTED)
-    lines = rest.split(b"\n")
-    while lines and not lines[-1].strip():
-        lines.pop()
-    if newline == b"\r\n":
-        lines = [line.rstrip(b"\r") for line in lines]
-    return header, lines, newline
+    return header, end + 1
 
 
 def _columns(header: list[str], path: Path) -> dict[str, int]:
@@ -222,52 +229,6 @@ def _columns(header: list[str], path: Path) -> dict[str, int]:
     return columns
 
 
-def _table(lines: list[bytes], cells: int, path: Path) -> tuple[list[bytes], Array, Mask]:
-    """Split rows into timecodes and (rows, cells - 2) values; a row of two cells with count 0 is a lost frame."""
-    if not lines:
-        raise FormatError(f"{path.name} has a header but no frames.")
-    timecodes: list[bytes] = []
-    bodies: list[bytes] = []
-    lost = np.zeros(len(lines), bool)
-    for index, line in enumerate(lines):
-        parts = line.split(b",", 2)
-        timecodes.append(parts[0].strip())
-        if len(parts) == 2 and parts[1].strip() == b"0":
-            lost[index] = True
-        elif len(parts) == 3 and parts[2].count(b",") == cells - 3:
-            bodies.append(parts[2])
-        else:
-            found = line.count(b",") + 1
-            raise FormatError(
-                f"{path.name} has {found} cells in row {index + 2} where its header has {cells}.",
-                "The file may be cut off or damaged." if index == len(lines) - 1 else "",
-            )
-    values = np.zeros((len(lines), cells - 2))
-    if bodies:
-        values[~lost] = _floats(bodies, np.flatnonzero(~lost) + 2, cells - 2, path)
-    return timecodes, values, lost
-
-
-def _floats(bodies: list[bytes], row_numbers: npt.NDArray[np.int64], count: int, path: Path) -> Array:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        try:
-            flat = np.fromstring(b",".join(bodies), dtype=np.float64, sep=",")
-            return np.asarray(flat.reshape(len(bodies), count))
-        except (ValueError, DeprecationWarning):
-            pass
-    for body, row in zip(bodies, row_numbers, strict=True):  # the slow way finds the cell to blame
-        for column, cell in enumerate(body.split(b",")):
-            try:
-                float(cell)
-            except ValueError:
-                shown = cell[:20].decode("utf-8", "replace")
-                raise FormatError(
-                    f"{path.name} has {shown!r} for a number in row {row}, column {column + 3}."
-                ) from None
-    raise FormatError(f"{path.name} could not be read as numbers.", EXPECTED)
-
-
 def _require_finite(values: Array, header: list[str], path: Path) -> None:
     bad = np.argwhere(~np.isfinite(values))
     if len(bad):
@@ -282,14 +243,21 @@ def _seconds(timecodes: list[bytes]) -> Array | None:
     """Return times, (rows,) in seconds, of `HH:MM:SS:FF.mmm`; None where one of them is no time."""
     if any(timecode.count(b":") != 3 for timecode in timecodes):
         return None
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        try:
-            parts = np.fromstring(b":".join(timecodes), dtype=np.float64, sep=":").reshape(-1, 4)
-        except (ValueError, DeprecationWarning):
-            return None
+    try:
+        parts = np.concatenate(
+            [_parts(timecodes[first : first + BLOCK_ROWS]) for first in range(0, len(timecodes), BLOCK_ROWS)]
+        )
+    except ValueError:
+        return None
     times = parts @ np.array([3600.0, 60.0, 1.0, 1.0 / TICKS_PER_SECOND])
     return times if len(times) == len(timecodes) and np.isfinite(times).all() else None
+
+
+def _parts(timecodes: list[bytes]) -> Array:
+    """Return the four numbers of each timecode, (rows, 4); `ValueError` where one is none."""
+    text = np.frombuffer(b":".join(timecodes) + b":", np.uint8)
+    ends = np.flatnonzero(text == COLON)
+    return floats(text, np.concatenate([[0], ends[:-1] + 1]), ends).reshape(-1, 4)
 
 
 def _clock(timecodes: list[bytes], fps: float | None) -> _Clock:
@@ -332,21 +300,26 @@ def _resample(
     rotations = np.zeros((frames, len(ROTATIONS)))
     grid, seen = np.arange(frames), clock.rows[~lost]
     whole = frames == len(values) and not lost.any()
-    for name, column in columns.items():
-        recorded = values[~lost, column]
-        curve = recorded if whole else np.interp(grid, seen, recorded)
-        if name in SHAPE_INDEX:
-            weights[:, SHAPE_INDEX[_recorded_name(name, swapped=swap)]] = curve
+    for kept, places in ((weights, SHAPE_INDEX), (rotations, ROTATION_PLACES)):
+        found = {places[_recorded_name(name, swapped=swap)]: at for name, at in columns.items() if name in places}
+        recorded = values[:, list(found.values())]  # all of a row at once, as it lies in memory
+        if whole:
+            kept[:, list(found)] = recorded
         else:
-            rotations[:, ROTATIONS.index(name)] = curve
+            for index, curve in zip(found, recorded[~lost].T, strict=True):
+                kept[:, index] = np.interp(grid, seen, curve)
     take_lost = np.zeros(frames, bool)
     take_lost[clock.rows[lost]] = True
     gaps = np.interp(grid, clock.rows, lost.astype(float)) if not whole else np.zeros(frames)
     return weights, take_lost | (gaps == 1.0), rotations
 
 
-def _decimals(lines: list[bytes], lost: Mask) -> int:
-    cells = lines[int(np.flatnonzero(~lost)[0])].split(b",")
+def _decimals(content: bytes, first: int) -> int:
+    """Return how many digits the first row with a face has behind the point."""
+    cells: list[bytes] = []
+    while len(cells) < 3:
+        end = content.find(b"\n", first) % (len(content) + 1)
+        cells, first = content[first:end].split(b","), end + 1
     digits = [len(cell.strip().partition(b".")[2]) for cell in cells[2:]]
     return min(max(digits, default=10), 17) or 10
 

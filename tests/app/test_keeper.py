@@ -12,6 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.commands import EditCommand, MarkCommand
 from app.keeper import Keeper
+from app.opening import Wish, opened
 from app.session import Session
 from engine import project
 from engine.controls import measure
@@ -114,7 +115,7 @@ def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make:
     (left,) = second.left_over()
     assert (left.name, left.edits) == ("random", 5)
     assert left.sentence.startswith("random (00:01:10), 5 edits, ")
-    second.recover(left)
+    second.open(opened(second._session, Wish(left.path, left_over=True)))
     again = second._session
     assert alike(session, again) and again.edited and again.path is None
     while session.undo.canRedo():
@@ -152,7 +153,7 @@ def test_a_step_that_was_merged_is_kept_as_it_became(qtbot: QtBot, make: Made) -
         kept(qtbot, first, lambda patch=patch: session.undo.push(Nudge(session, patch, "nudge")))
     assert session.undo.count() == 1
     first.close()
-    second.recover(second.left_over()[0])
+    second.open(opened(second._session, Wish(second.left_over()[0].path, left_over=True)))
     assert alike(session, second._session)
 
 
@@ -171,7 +172,7 @@ def test_saving_moves_the_work_to_the_project_and_every_later_step_too(
     first.close()
 
     second = make()
-    second.open(path)
+    second.open(opened(second._session, Wish(path)))
     assert alike(session, second._session) and not second._session.edited and second.path == path
     assert second.left_over() == []
 
@@ -209,7 +210,7 @@ def test_opening_another_take_neither_loses_nor_empties_what_was_kept(
     kept(qtbot, first, lambda: push(first._session, 1))
     first._session.open(Take(weights=np.zeros((9, len(SHAPES))), fps=24.0), None)
     (left,) = first.left_over()
-    first.recover(left)
+    first.open(opened(first._session, Wish(left.path, left_over=True)))
     saved(qtbot, first, tmp_path / "a.retake")
     first._session.open(first._session.original, None)  # the very same take again
     push(first._session, 2)
@@ -224,7 +225,7 @@ def test_a_project_that_cannot_be_read_leaves_the_session_as_it_was(qtbot: QtBot
     take = first._session.take
     (tmp_path / "a.retake").write_bytes(b"nonsense" * 500)
     with pytest.raises(EngineError, match="not a Retake project"):
-        first.open(tmp_path / "a.retake")
+        first.open(opened(first._session, Wish(tmp_path / "a.retake")))
     assert first._session.take is take
     kept(qtbot, first, lambda: push(first._session, 2))
 
@@ -245,7 +246,7 @@ def test_a_folder_that_cannot_be_written_is_told_once_and_tried_again_with_each_
     (tmp_path / "data").unlink()
     kept(qtbot, first, lambda: push(first._session, 3))
     first.close()
-    second.recover(second.left_over()[0])
+    second.open(opened(second._session, Wish(second.left_over()[0].path, left_over=True)))
     assert alike(first._session, second._session) and second._session.undo.count() == 4
 
 
@@ -293,7 +294,7 @@ def test_what_cannot_be_written_is_edited_as_unsaved_work(
     first.close()
     second, before = make(), path.read_bytes()
     monkeypatch.setattr("engine.project.store.os.access", lambda *_: False)
-    second.open(path)
+    second.open(opened(second._session, Wish(path)))
     assert second.path is None and second._session.path == path
     kept(qtbot, second, lambda: push(second._session, 1))
     second.close()

@@ -9,6 +9,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.keeper import Keeper
+from app.opening import Wish, opened
 from engine.project import Project
 from tests.app.test_keeper import Made, alike, kept, make, push, refused, saved
 from tests.performance import kills
@@ -51,7 +52,7 @@ def test_saving_returns_at_once_and_edits_made_meanwhile_are_in_the_file(
     assert copied == [2] and first.saving is None and first.path == path  # they came with the copy itself
     qtbot.waitUntil(lambda: not session.edited, timeout=10_000)
     first.close()
-    second.open(path)
+    second.open(opened(second._session, Wish(path)))
     assert alike(session, second._session)
 
 
@@ -69,7 +70,7 @@ def test_a_step_that_the_old_file_has_no_room_for_waits_for_the_new_one(
     disk.go.set()
     qtbot.waitUntil(lambda: first.path == path and not first._session.edited, timeout=10_000)
     first.close()
-    second.open(path)
+    second.open(opened(second._session, Wish(path)))
     assert alike(first._session, second._session)
 
 
@@ -129,7 +130,8 @@ def test_the_project_that_is_open_can_be_opened_again(qtbot: QtBot, make: Made, 
     push(first._session, 1)
     saved(qtbot, first, path)
     kept(qtbot, first, lambda: push(first._session, 2))
-    first.open(path)
+    first.release()
+    first.open(opened(first._session, Wish(path)))
     assert first.path == path and first._session.undo.count() == 2
     kept(qtbot, first, lambda: push(first._session, 3))
 

@@ -39,6 +39,12 @@ def no_dialog(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(QMessageBox, "exec", refuse)
 
 
+def load(qtbot: QtBot, window: MainWindow, path: Path) -> None:
+    """Open a file, and wait until it is open."""
+    with qtbot.waitSignal(window.files.opened, timeout=20_000):
+        window.load(path)
+
+
 def settled(qtbot: QtBot, window: MainWindow) -> None:
     """Wait until nothing is inferred or drawn any more, full resolution included."""
 

@@ -14,6 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from app.keeper import Keeper
 from app.main_window import MainWindow
+from app.opening import Wish, opened
 from app.session import Session
 from engine.formats import read_take
 from engine.live.replay import replay
@@ -87,7 +88,7 @@ def test_a_window_closed_while_it_records_offers_the_recording_at_the_next_start
         assert keeper.left_over() == []  # for all it knows another program is still recording
         monkeypatch.setattr("app.keeper.ABANDONED_S", -1.0)
         (left,) = keeper.left_over()
-        keeper.recover(left)
+        keeper.open(opened(session, Wish(left.path, left_over=True)))
     finally:
         keeper.close()
     np.testing.assert_allclose(session.take.weights, sent.weights, atol=1e-6)

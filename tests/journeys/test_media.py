@@ -19,7 +19,7 @@ from app.timeline.panel import AUDIO_PX, RULER_PX
 from engine.performance import demo
 from tests.app.playback.sinks import ThreadSink
 from tests.films import film
-from tests.journeys.conftest import settled
+from tests.journeys.conftest import load, settled
 
 LEFT, PLAIN, ALT = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.AltModifier
 RATE = 16_000
@@ -98,8 +98,9 @@ def test_sound_is_attached_moved_saved_and_comes_back(
         session.undo.redo()
 
     save(qtbot, window, chosen, tmp_path / "a project.retake")
-    assert window.load(demo.BUNDLED) and session.audio is None and not window.attached.isVisible()
-    assert window.load(tmp_path / "a project.retake")
+    load(qtbot, window, demo.BUNDLED)
+    assert session.audio is None and not window.attached.isVisible()
+    load(qtbot, window, tmp_path / "a project.retake")
     qtbot.waitUntil(lambda: session.audio is not None, timeout=10_000)
     assert session.audio.path == sound and session.offset_s("audio") == pytest.approx(0.35)
     assert not window.missing.isVisible() and not session.edited
@@ -126,7 +127,7 @@ def test_what_lay_beside_a_take_is_in_its_project_and_undoing_older_steps_keeps_
     take = Path(shutil.copy(demo.BUNDLED, tmp_path / "slate.csv"))
     recording(tmp_path / "slate.wav")
     film(tmp_path / "slate.mp4", [round(1000 * n / 30) for n in range(60)])
-    assert window.load(take)
+    load(qtbot, window, take)
     window.session.select((20, 40))
     window.timeline.marked.emit()  # a step from before the sound is found
     qtbot.waitUntil(lambda: len(window.session.marks.media) == 2, timeout=10_000)
@@ -135,8 +136,8 @@ def test_what_lay_beside_a_take_is_in_its_project_and_undoing_older_steps_keeps_
     assert window.session.audio is not None and window.session.video is not None
     (tmp_path / "projects").mkdir()
     save(qtbot, window, chosen, tmp_path / "projects" / "another name.retake")
-    assert window.load(demo.BUNDLED)
-    assert window.load(tmp_path / "projects" / "another name.retake")
+    load(qtbot, window, demo.BUNDLED)
+    load(qtbot, window, tmp_path / "projects" / "another name.retake")
     qtbot.waitUntil(lambda: window.session.audio is not None and window.session.video is not None, timeout=10_000)
 
 
@@ -151,7 +152,7 @@ def test_a_file_that_was_moved_is_located_and_another_content_is_told(
     moved = tmp_path / "moved to" / "b.wav"
     moved.parent.mkdir()
     shutil.move(tmp_path / "p" / "a.wav", moved)
-    assert window.load(project)
+    load(qtbot, window, project)
     qtbot.waitUntil(window.missing.isVisible, timeout=10_000)
     assert session.audio is None and session.marks.medium("audio") is not None
     assert window.actions_by_name["locate_media"].isEnabled()
@@ -162,11 +163,13 @@ def test_a_file_that_was_moved_is_located_and_another_content_is_told(
     assert not window.missing.isVisible() and not window.notices.isVisible()
     assert session.undo.count() == 2 and session.offset_s("audio") == 0.2  # the same file: nothing was done
     qtbot.waitUntil(lambda: window.keeper._work.idle, timeout=10_000)
-    assert window.load(demo.BUNDLED) and window.load(project)
+    load(qtbot, window, demo.BUNDLED)
+    load(qtbot, window, project)
     qtbot.waitUntil(lambda: session.audio is not None, timeout=10_000)  # and it is found there from now on
 
     moved.unlink()
-    assert window.load(demo.BUNDLED) and window.load(project)
+    load(qtbot, window, demo.BUNDLED)
+    load(qtbot, window, project)
     qtbot.waitUntil(window.missing.isVisible, timeout=10_000)
     chosen.append(recording(tmp_path / "other.wav", seed=1))
     QTest.mouseClick(button(window, "Locate b.wav…"), LEFT)
@@ -187,7 +190,7 @@ def test_a_file_that_was_cut_short_can_be_used_all_the_same_or_detached(
     save(qtbot, window, chosen, project)
     for path in (sound, video):
         path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-    assert window.load(project)
+    load(qtbot, window, project)
     qtbot.waitUntil(lambda: len(window.media.missing) == 2, timeout=10_000)
     buttons = [each for each in window.missing.findChildren(QPushButton) if each.text() == "Use it all the same"]
     QTest.mouseClick(buttons[0], LEFT)

@@ -18,7 +18,7 @@ from engine.controls import CONTROL_INDEX, measure
 from engine.formats import read_take
 from engine.performance import demo
 from tests.engine.projects import same
-from tests.journeys.conftest import settled
+from tests.journeys.conftest import load, settled
 from tests.pictures.compare import SIZE, looks_as_it_did
 
 LIPS = CONTROL_INDEX["lips_vertical"]
@@ -93,9 +93,9 @@ def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
     QTest.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
     np.testing.assert_allclose(read_take(exported).weights, session.take.weights, atol=1e-8)
 
-    assert window.load(exported)
+    load(qtbot, window, exported)
     np.testing.assert_allclose(session.take.weights, after[0], atol=1e-8)
-    assert window.load(project)
+    load(qtbot, window, project)
     np.testing.assert_array_equal(session.take.weights, after[0])
     QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     settled(qtbot, window)
@@ -140,7 +140,8 @@ def test_a_file_that_cannot_be_read_leaves_the_work_as_it_was(qtbot: QtBot, wind
     take = window.session.take
     for name, content in (("a.csv", b""), ("b.csv", b"\x89PNG\r\n\x1a\n" + bytes(200)), ("c.csv", b"hello, world\n")):
         (tmp_path / name).write_bytes(content)
-        assert not window.load(tmp_path / name)
+        with qtbot.waitSignal(window.files.told, timeout=20_000):
+            window.load(tmp_path / name)
         assert window.notices.isVisible() and name in window.notices.text.text()
         assert "Traceback" not in window.notices.text.text()
     assert window.session.take is take and window.session.undo.count() == 1

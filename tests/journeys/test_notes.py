@@ -10,6 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.main_window import MainWindow
 from engine.performance import demo
+from tests.journeys.conftest import load
 
 
 def test_a_note_is_typed_shown_saved_and_taken_back(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
@@ -23,7 +24,9 @@ def test_a_note_is_typed_shown_saved_and_taken_back(qtbot: QtBot, window: MainWi
     assert window.timeline.sizeHint().height() > height
     with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
         window.keeper.save_as(tmp_path / "noted.retake")
-    assert window.load(demo.BUNDLED) and session.marks.notes == ()
-    assert window.load(tmp_path / "noted.retake") and session.marks.notes == (note,)
+    load(qtbot, window, demo.BUNDLED)
+    assert session.marks.notes == ()
+    load(qtbot, window, tmp_path / "noted.retake")
+    assert session.marks.notes == (note,)
     session.undo.undo()
     assert session.marks.notes == ()

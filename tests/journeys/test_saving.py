@@ -30,7 +30,7 @@ def test_closing_while_a_project_is_saved_waits_with_a_sentence(
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
     with window.keeper._lock:  # a disk that takes for ever
         QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
-        qtbot.waitUntil(window.status.bar.isVisible, timeout=5_000)
+        qtbot.waitUntil(window.status.saving.isVisible, timeout=5_000)
         assert window.status["saved"].text() == "saving Ärger 顔.retake…"
         noted(window, "two")
         assert not window.close() and window.isVisible()

@@ -16,7 +16,7 @@ from app.playback.clock import AudioClock
 from engine.performance import demo
 from tests.app.playback.sinks import ThreadSink
 from tests.films import film, shade
-from tests.journeys.conftest import settled
+from tests.journeys.conftest import load, settled
 
 
 def test_what_lies_beside_a_take_is_heard_and_seen(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
@@ -25,7 +25,7 @@ def test_what_lies_beside_a_take_is_heard_and_seen(qtbot: QtBot, window: MainWin
     soundfile.write(tmp_path / "slate.wav", np.random.default_rng(0).uniform(-0.5, 0.5, 16_000 * 10), 16_000)
     film(tmp_path / "slate.mp4", [round(1000 * n / 30) for n in range(300)])
     low = window.timeline.height()
-    assert window.load(take)
+    load(qtbot, window, take)
     qtbot.waitUntil(lambda: window.session.audio is not None, timeout=10_000)
     qtbot.waitUntil(lambda: window.timeline.height() > low, timeout=10_000)
     assert window.reference.isVisible() and isinstance(window.transport.clock, AudioClock)
@@ -44,6 +44,6 @@ def test_what_lies_beside_a_take_is_heard_and_seen(qtbot: QtBot, window: MainWin
     assert window.transport.clock.muted and window.transport.playing
     QTest.keyClick(window, Qt.Key.Key_Space)
 
-    assert window.load(demo.BUNDLED)
+    load(qtbot, window, demo.BUNDLED)
     assert window.session.audio is None and not window.reference.isVisible()
     qtbot.waitUntil(lambda: window.timeline.height() == low, timeout=10_000)

@@ -27,6 +27,7 @@ def test_opening_over_unsaved_edits_asks(
     asked = []
     monkeypatch.setattr(QMessageBox, "question", lambda *words: asked.append(words[2]) or answer)
     edited = window.session.take
-    assert window.load(other) is opens
+    window.load(other)
+    qtbot.waitUntil(lambda: bool(asked), timeout=20_000)
     assert asked == ["demo.csv has edits that are not saved."]
     assert (window.session.take is edited) is not opens

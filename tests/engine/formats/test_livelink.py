@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +93,54 @@ def test_bad_files_get_one_sentence(tmp_path: Path, content: bytes, says: str) -
     with pytest.raises(EngineError, match=says) as caught:
         livelink.read(written(tmp_path, content))
     assert "täke.csv" in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("block_bytes", [1, 700, 5000])
+def test_a_file_is_read_the_same_in_any_blocks(monkeypatch: pytest.MonkeyPatch, block_bytes: int) -> None:
+    whole = livelink.read(demo.BUNDLED)
+    monkeypatch.setattr("engine.formats.livelink_table.BLOCK_BYTES", block_bytes)
+    shares: list[float] = []
+    pieces = livelink.read(demo.BUNDLED, shares.append)
+    for name in ("weights", "rotations", "lost"):
+        np.testing.assert_array_equal(getattr(pieces, name), getattr(whole, name))
+    assert pieces.origin.timecodes == whole.origin.timecodes and pieces.fps == whole.fps
+    assert shares == sorted(shares) and shares[-1] == 1.0 and len(shares) > 10
+
+
+@pytest.mark.parametrize("row", [2, 3, 50, 200])
+@pytest.mark.parametrize(
+    ("put", "says"),
+    [
+        (lambda cells: [*cells[:9], b"1,5", *cells[10:]], "64 cells in row {row} where its header has 63"),
+        (lambda cells: cells[:-1], "62 cells in row {row}"),
+        (lambda cells: [], "1 cells in row {row}"),
+        (lambda cells: cells[:2], "2 cells in row {row}"),
+        (lambda cells: [*cells[:9], b"0.1x", *cells[10:]], "'0.1x' for a number in row {row}, column 10"),
+        (lambda cells: [*cells[:-1], b""], "'' for a number in row {row}, column 63"),
+    ],
+)
+def test_a_damaged_cell_is_named_in_any_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, row: int, put: Callable[[list[bytes]], list[bytes]], says: str
+) -> None:
+    monkeypatch.setattr("engine.formats.livelink_table.BLOCK_BYTES", 5000)
+    for newline in (b"\n", b"\r\n"):
+        lines = [line for line in DEMO.split(b"\n") if line and not line.endswith(b",0")]
+        lines[row - 1] = b",".join(put(lines[row - 1].split(b",")))
+        with pytest.raises(EngineError, match=says.format(row=row)):
+            livelink.read(written(tmp_path, newline.join(lines)))
+
+
+def test_reading_ends_where_the_listener_says_so() -> None:
+    def stop(share: float) -> None:
+        raise EngineError("Enough.")
+
+    with pytest.raises(EngineError, match="Enough"):
+        livelink.read(demo.BUNDLED, stop)
+
+
+@pytest.mark.parametrize("tail", [b"\n\n\n", b"\r\n \t\n", b" " * 2_000_000])
+def test_blank_rows_at_the_end_are_nothing(tmp_path: Path, tail: bytes) -> None:
+    assert len(livelink.read(written(tmp_path, DEMO + tail))) == len(livelink.read(demo.BUNDLED))
 
 
 def test_one_frame_is_a_take(tmp_path: Path) -> None:
