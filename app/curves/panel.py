@@ -83,6 +83,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     def _on_change(self, change: Change) -> None:
         kinds = Change
         for cause, step in (
+            (kinds.TAKE, self._let_go),
             (kinds.TAKE | kinds.LANES, self._lay_lanes),
             (kinds.TAKE | kinds.LANES | kinds.CURVES, self._take_curves),
             (kinds.TAKE | kinds.LANES | kinds.CURVES, self._fit_values),
@@ -104,6 +105,11 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.marks.spans]
         self._underlay.update()
         self._playhead.update()
+
+    def _let_go(self) -> None:
+        """Drop a gesture whose take is gone: its frames may not be there any more."""
+        if self.tool.busy:
+            self.tool.cancel()
 
     def _take_up_tool(self) -> None:
         for tool in self.tools.values():
