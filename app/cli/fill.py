@@ -91,9 +91,11 @@ def _pin(text: str) -> tuple[int, Pose]:
         )
     if "=" in what:
         return int(frame), dict(_weight(part) for part in what.split(","))
-    name, _, which = what.partition("@")
+    name, at, which = what.rpartition("@") if "@" in what else (what, "", "0")
+    if at and not _is_frame(which):
+        raise EditError(f"{which[:40]!r} is not a frame of {Path(name).name}.", "Write OTHER.csv@FRAME.")
     other = read_take(Path(name))
-    index = int(which) if _is_frame(which) else 0
+    index = int(which)
     if index >= len(other):
         raise EditError(f"{other.name} has no frame {index}: it has {len(other)} frames.")
     return int(frame), other.weights[index]
