@@ -12,6 +12,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from engine import exact
 from engine.controls import CONTROLS, bundled_measurer, control_index
+from engine.easing import ease
 from engine.errors import EditError
 from engine.models.resample import interpolate
 from engine.regress import infer
@@ -95,12 +96,6 @@ def ask(
     return first, asked
 
 
-def ease(position: Array) -> Array:
-    """Return the smooth step, 0 at 0 and 1 at 1 with no slope at either."""
-    clipped = np.clip(position, 0.0, 1.0)
-    return np.asarray(clipped * clipped * (3 - 2 * clipped))
-
-
 class Dragger:
     """Bends one take by its control curves (BSBS19 section 4), as often as the pointer moves.
 
@@ -165,10 +160,11 @@ class Dragger:
         edited = original.copy()
         edited[first - seen_from : last - seen_from] = wanted
         at = np.arange(low, high, dtype=np.float64) / per_frame - seen_from
+        kept = interpolate(self.take.weights[seen_from:seen_to], at)
+        rows = start - low, stop - low
         if self._known is None or self._known[0] != (start, stop):
-            known = self._regressor.infer_range(interpolate(original, at), start - low, stop - low)
-            self._known = ((start, stop), known)
-        made = self._regressor.infer_range(interpolate(edited, at), start - low, stop - low)
+            self._known = ((start, stop), self._regressor.infer_range(interpolate(original, at), *rows, kept=kept))
+        made = self._regressor.infer_range(interpolate(edited, at), *rows, kept=kept)
         return interpolate(made - self._known[1], np.arange(first, last, dtype=np.float64) * per_frame - start)
 
 

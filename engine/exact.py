@@ -13,7 +13,13 @@ DAMPING = 1e-3  # mm^2; keeps the step finite where a control hardly moves
 
 
 def project(
-    weights: Array, asked: Array, columns: npt.NDArray[np.int64], measurer: Measurer, *, free: npt.NDArray[np.bool_]
+    weights: Array,
+    asked: Array,
+    columns: npt.NDArray[np.int64],
+    measurer: Measurer,
+    *,
+    free: npt.NDArray[np.bool_],
+    rounds: int = ROUNDS,
 ) -> Array:
     """Return weights whose controls `columns` reach `asked`, (frames, columns) in mm, near `weights`, (frames, 52).
 
@@ -23,7 +29,7 @@ def project(
     """
     current = np.array(weights)
     low, high = np.minimum(weights, 0.0), np.maximum(weights, 1.0)
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         missing = asked - measurer.measure(current)[:, columns]
         if np.abs(missing).max(initial=0.0) < 1e-6:
             break

@@ -20,7 +20,7 @@ from engine.errors import AssetError
 from engine.evaluate.baselines import ridge
 from engine.evaluate.baselines.nearest import Nearest
 from engine.evaluate.baselines.parts import Areas, Material
-from engine.evaluate.regress import Method, figures_of
+from engine.evaluate.regress import Method, figures_of, of_controls
 from engine.formats.atomic import write_bytes
 from engine.models.checkpoint import MODELS
 from engine.performance.augment import Levers
@@ -66,7 +66,10 @@ def _networks(training: Sequence[Piece], held: Sequence[Piece], settings: Settin
                 path = Path(folder) / f"{area.name}.safetensors"
                 networks[area.name], _ = train_area(area, training, held, settings, path=path, report=lambda _: None)
     made = Regressor(networks)
-    return {"regressor": lambda controls: made.infer(controls, full=False), "full": made.infer}
+    return {
+        "regressor": lambda controls, _: made.infer(controls, full=False),
+        "full": lambda controls, kept: made.infer(controls, kept=kept),
+    }
 
 
 def _ridge(training: Sequence[Piece], settings: Settings) -> Method:
@@ -75,7 +78,7 @@ def _ridge(training: Sequence[Piece], settings: Settings) -> Method:
         made = material_of(area, training, settings)
         pieces = [piece.weights for piece in (whole_faces(training) if area.needs_whole_face else training)]
         materials.append(Material(area, made, cut(pieces, length=settings.window, overlap=0.0)))
-    return Areas(ridge.train(materials, lambda _: None)[0], alignment=1).infer
+    return of_controls(Areas(ridge.train(materials, lambda _: None)[0], alignment=1).infer)
 
 
 def takes(data: Path, report: Report) -> list[Row]:
@@ -88,7 +91,7 @@ def takes(data: Path, report: Report) -> list[Row]:
         training = [piece for piece in pieces if piece.source != name]
         methods = _networks(training, held, SHORT) | {
             "ridge": _ridge(training, SHORT),
-            "nearest": Nearest(training).infer,
+            "nearest": of_controls(Nearest(training).infer),
         }
         for method, infer in methods.items():
             rows.append({"method": method, "take": name} | figures_of(infer, held))
