@@ -11,7 +11,6 @@ from engine.regress.data import NearestFaces, Source, cut
 from engine.regress.losses import distance_error
 from engine.regress.network import BEYOND, AreaNetwork, UNetConfig
 from engine.regress.requests import contradictory, exaggerated, salt_and_pepper
-from engine.take import SHAPES
 
 
 def test_a_closure_invented_weighs_like_one_missed() -> None:
