@@ -1,6 +1,6 @@
-"""Contacts: a face that all but keeps the asked distances of lips and lids is made to keep them.
+"""Contacts: lips and lids that all but keep a small asked distance are made to keep it.
 
-A network misses them by tenths of a millimetre: nothing on an open mouth, a lost or an invented closure on a shut one.
+A network misses by tenths of a millimetre: nothing on an open mouth, a lost or an invented closure on a shut one.
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ from engine.take import SHAPES, Array
 MEETING = tuple(CONTROL_INDEX[name] for name in ("lips_vertical", "eyelid_right", "eyelid_left"))
 AREA_OF = ("lower", "eyelids", "eyelids")
 SHUT_MM = 0.2  # nearer than this nothing is to be gained, and which way to move gets lost
+NEAR_MM, FAR_MM = 4.0, 6.0  # asked or reached: nearer than the first is about to touch, further than the second is open
 CLOSE_MM, APART_MM = 1.0, 2.0  # a face that misses by less is corrected; one that misses by more was mended on purpose
 ALIKE_MM, UNLIKE_MM = 0.5, 1.0  # so was one whose lids move together where the request's do not
 TEMPERED, WHOLE = 0.8, 0.95  # and one whose request had to be scaled down that much
-ROUNDS = 4
+ROUNDS = 2
 FREE = np.isin(np.arange(len(SHAPES)), np.concatenate([area.shape_columns for area in AREAS if area.name in AREA_OF]))
 
 
@@ -37,6 +38,11 @@ def _measurer() -> Measurer:
     return Measurer(bundled(), [CONTROLS[column] for column in MEETING])
 
 
+def _fade(value: Array, start: float, stop: float) -> Array:
+    """Return 1 up to `start`, easing to 0 at `stop`."""
+    return ease((stop - value) / (stop - start))
+
+
 def met(weights: Array, asked: Array, scale: Array) -> Array:
     """Return weights, (frames, 52) in 0..1, that keep the distances of asked curves, (frames, 8) in mm, each frame for itself.
 
@@ -45,9 +51,10 @@ def met(weights: Array, asked: Array, scale: Array) -> Array:
     wanted, measurer = asked[:, MEETING], _measurer()
     reached = measurer.measure(weights)
     missed = np.maximum(wanted, SHUT_MM) - np.maximum(reached, SHUT_MM)
-    share = ease((APART_MM - np.abs(missed)) / (APART_MM - CLOSE_MM)) * ease((scale - TEMPERED) / (WHOLE - TEMPERED))
+    share = _fade(np.minimum(wanted, reached), NEAR_MM, FAR_MM) * _fade(np.abs(missed), CLOSE_MM, APART_MM)
+    share *= _fade(-scale, -WHOLE, -TEMPERED)
     unlike = np.abs(missed[:, 1] - missed[:, 2])
-    share[:, 1:] *= ease((UNLIKE_MM - unlike) / (UNLIKE_MM - ALIKE_MM))[:, None]
+    share[:, 1:] *= _fade(unlike, ALIKE_MM, UNLIKE_MM)[:, None]
     rows = (share > 0).any(axis=1)
     landed = np.array(weights)
     if rows.any():
