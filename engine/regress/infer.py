@@ -25,7 +25,7 @@ class Regressor:
     """
 
     def __init__(self, networks: dict[str, AreaNetwork]) -> None:
-        self._networks = networks
+        self.networks = networks
         for network in networks.values():
             network.eval()
 
@@ -69,7 +69,7 @@ class Regressor:
         trust = np.zeros((frames, len(contacts.MEETING)))
         with torch.inference_mode():
             for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
-                network = self._networks[area.name]
+                network = self.networks[area.name]
                 asked = torch.from_numpy(held[:, area.control_columns].T.astype(np.float32))[None]
                 if full:
                     asked, share = network.tempered(asked)
@@ -78,7 +78,7 @@ class Regressor:
         return trust
 
     def _areas(self, *, extended: bool) -> list[Area]:
-        return [area for area in AREAS + EXTENDED_AREAS * extended if area.name in self._networks]
+        return [area for area in AREAS + EXTENDED_AREAS * extended if area.name in self.networks]
 
 
 def load(folder: Path = MODELS) -> Regressor:

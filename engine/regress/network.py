@@ -15,7 +15,7 @@ LOOK = 8  # frames on either side that are scaled with an excess, and over which
 # stacked on what looks 2 * LOOK frames around, and 4 for median and velocity.
 REACH = 68
 ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
-BEYOND = 0.02  # share of recorded frames that the full system holds to be further out than a face goes
+BEYOND = 0.005  # share of recorded frames that the full system holds to be further out than a face goes
 
 
 @dataclass(frozen=True)
