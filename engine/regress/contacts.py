@@ -23,7 +23,7 @@ SHUT_MM = 0.2  # nearer than this nothing is to be gained, and which way to move
 NEAR_MM, FAR_MM = 4.0, 6.0  # asked or reached: nearer than the first is about to touch, further than the second is open
 CLOSE_MM, APART_MM = 1.0, 2.0  # a face that misses by less is corrected; one that misses by more was mended on purpose
 ALIKE_MM, UNLIKE_MM = 0.5, 1.0  # so was one whose lids move together where the request's do not
-TEMPERED, WHOLE = 0.8, 0.95  # and one whose request had to be scaled down that much
+TEMPERED, WHOLE = 0.4, 0.7  # and one whose request had to be scaled down that much
 ROUNDS = 2
 FREE = np.isin(np.arange(len(SHAPES)), np.concatenate([area.shape_columns for area in AREAS if area.name in AREA_OF]))
 

@@ -119,7 +119,8 @@ class AreaNetwork(nn.Module):
     def _share(self, away: Tensor) -> Tensor:
         """Return by how much to scale each frame, (batch, 1, frames), for it to be within the bound."""
         distance = (self.whiten @ _with_velocity(away)).norm(dim=1, keepdim=True)
-        return (self.bound / distance.clamp(min=1e-6)).clamp(max=1.0)
+        share: Tensor = (self.bound / distance.clamp(min=1e-6)).clamp(max=1.0)
+        return share
 
     @torch.no_grad()
     def learn_bounds(self, controls: Tensor) -> None:

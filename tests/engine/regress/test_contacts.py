@@ -42,7 +42,7 @@ def test_a_face_far_from_what_is_asked_was_mended_on_purpose() -> None:
 
 def test_a_request_that_had_to_be_tempered_is_not_met_to_the_letter(weights: Array) -> None:
     asked = measure(weights) + 0.5
-    np.testing.assert_array_equal(met(weights, asked, 0.5 * WHOLLY), weights)
+    np.testing.assert_array_equal(met(weights, asked, 0.3 * WHOLLY), weights)
     assert (met(weights, asked, WHOLLY) != weights).any()
 
 

@@ -53,19 +53,22 @@ def test_what_was_recorded_is_tempered_hardly_ever() -> None:
     torch.manual_seed(0)
     controls = torch.randn(20, 3, 256).cumsum(dim=2) * 0.1
     network = _tempered(controls)
-    unchanged = (network.tempered(controls)[0] == controls).all(dim=1).float().mean()
-    assert 1 - 60 * BEYOND < unchanged < 1.0
+    made, scale = network.tempered(controls)
+    whole = (scale == 1).float().mean()
+    assert 0.5 < whole < 1 - BEYOND and scale.mean() > 0.97
+    kept = (scale == 1).expand_as(made)
+    torch.testing.assert_close(made[kept], controls[kept])
 
 
 def test_exaggerated_motion_is_scaled_as_a_whole_to_what_was_recorded() -> None:
     time = torch.arange(128) / 10
     controls = torch.stack([time.sin(), time.cos(), (1.3 * time).sin()])[None] + 5.0
     network = _tempered(controls)
-    asked = 5.0 + 4 * (controls - 5.0)
+    asked = 5.0 + 8 * (controls - 5.0)
     made, _ = network.tempered(asked)
     inner = slice(20, -20)
     away = [(one - network.centre)[..., inner] for one in (made, controls, asked)]
-    assert away[1].abs().max() < away[0].abs().max() < 0.6 * away[2].abs().max()
+    assert away[1].abs().max() < away[0].abs().max() < 0.5 * away[2].abs().max()
     ratio = away[0] / away[2]
     torch.testing.assert_close(ratio, ratio[:, :1].expand_as(ratio), atol=1e-4, rtol=1e-3)
 
