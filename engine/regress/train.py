@@ -46,6 +46,7 @@ class Recipe:
     ----------
     epochs : of the regressor, of the autoencoder
     rates : Adam's at first; they fall along half a cosine, so that the last epochs settle
+    undo : whether the autoencoder is to make of an exaggerated face the one that it exaggerates, not the nearest real one
     """
 
     widths: tuple[int, int, int] = (8, 16, 32)
@@ -53,6 +54,7 @@ class Recipe:
     rates: tuple[float, float] = (2e-3, 2e-3)
     levers: Levers = field(default_factory=lambda: Levers(copies=2))
     synthetic_minutes: float = 8.0
+    undo: bool = False
 
 
 # Brows and lids differ more between people than the mouth does, and controls say less of them: without more people, drawn
@@ -61,7 +63,8 @@ _PEOPLE = Levers(copies=3, gain=0.4, mix=0.5, recombine=0.5, stretch=256)
 RECIPES = {
     "lower": Recipe((32, 64, 128), (40, 16), (1e-3, 1.5e-3), Levers(copies=3)),
     # The synthetic performer's brows and lids mislead: without them errors on people left out and on those seen are less.
-    "upper": Recipe((16, 32, 64), (120, 16), (2e-3, 2e-3), replace(_PEOPLE, copies=1), synthetic_minutes=0.0),
+    # Undoing exaggeration costs brows nothing; mouths and lids it would cost their widest and their closest.
+    "upper": Recipe((16, 32, 64), (120, 16), (2e-3, 2e-3), replace(_PEOPLE, copies=1), 0.0, undo=True),
     "eyelids": Recipe((16, 32, 64), (24, 16), (2e-3, 2e-3), _PEOPLE, synthetic_minutes=0.0),
 }
 
@@ -225,16 +228,15 @@ class AreaTrainer:
             noisy, salt_and_pepper(asked, network.low, network.high, settings.salt_and_pepper, rng), asked
         )
         factor = 1 + 2 * torch.rand(len(asked), 1, 1, generator=rng)
-        unfit = torch.where(
-            torch.rand(len(asked), 1, 1, generator=rng) < 0.5,
-            exaggerated(asked, self._rest, factor),
-            contradictory(asked, rng),
-        )
+        larger = torch.rand(len(asked), 1, 1, generator=rng) < 0.5
+        unfit = torch.where(larger, exaggerated(asked, self._rest, factor), contradictory(asked, rng))
         chosen = misfit[:, 0, 0]
         if chosen.any():
             bounded = torch.minimum(torch.maximum(unfit[chosen], network.low), network.high)
             seen, target = seen.clone(), target.clone()
-            seen[chosen], target[chosen] = unfit[chosen], self._nearest.weights(bounded)
+            undone = larger[chosen] & self._recipe.undo
+            seen[chosen] = unfit[chosen]
+            target[chosen] = torch.where(undone, target[chosen], self._nearest.weights(bounded))
         return _Batch(seen, target, windows.weights, asked, ~chosen)
 
     def _losses(self, made: Tensor, batch: _Batch) -> dict[str, Tensor]:
