@@ -27,6 +27,7 @@ class LatestWins(QObject):
 
     done = Signal(object, object)  # request, result
     failed = Signal(object, str, str)  # request, sentence, advice
+    rested = Signal()  # nothing waits and nothing runs, and all results before were sent
 
     def __init__(self, job: Callable[[Any], Any], *, name: str, close: Callable[[], None] | None = None) -> None:
         super().__init__()
@@ -50,10 +51,13 @@ class LatestWins(QObject):
             self._waiting[channel] = request
             self._wake.notify_all()
 
-    def finish(self) -> None:
-        """Return when nothing waits and nothing runs; results are delivered later, as ever."""
+    def finish(self, patience_s: float | None = None) -> bool:
+        """Return when nothing waits and nothing runs, or patience ends; results are delivered later, as ever.
+
+        Returns whether all is done; without a limit it always is.
+        """
         with self._wake:
-            self._wake.wait_for(lambda: self._stopping or (not self._waiting and not self._working))
+            return self._wake.wait_for(lambda: self._stopping or not (self._waiting or self._working), patience_s)
 
     def stop(self) -> None:
         """Finish the running job, then end the thread; returns when it has."""
@@ -67,6 +71,8 @@ class LatestWins(QObject):
             with self._wake:
                 self._working = False
                 self._wake.notify_all()
+                if not self._waiting:
+                    self.rested.emit()
                 self._wake.wait_for(lambda: self._stopping or bool(self._waiting))
                 if self._stopping:
                     break

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from app.bench_playback import playback_job, saving_job
 from engine import speed
 from engine.speed import Speed, percentile_ms
 from engine.speed.drag import performance_of
@@ -28,7 +30,7 @@ def measure(report: Report) -> list[dict[str, Any]]:
     for method in speed.METHODS:
         report(f"measuring {method}")
         rows += speed.measure(method)
-    for job in ("render", "window"):
+    for job in ("render", "window", "playback", "saving"):
         report(f"measuring {job}")
         rows += _in_own_process(job)
     rows.append(_startup())
@@ -74,6 +76,8 @@ def window_job() -> list[Speed]:
         Speed("drag_to_preview_60min_ms_p95", long, "ms", 50.0),
         Speed("curve_repaint_ms_p95", _repaint(long_take, whole=False), "ms", 16.0),
         Speed("curve_repaint_60_curves_60min_ms_p95", _repaint(long_take, whole=True), "ms", 50.0),
+        Speed("timeline_repaint_60min_ms_p95", _repaint_timeline(long_take, whole=False), "ms", 16.0),
+        Speed("timeline_repaint_whole_60min_ms_p95", _repaint_timeline(long_take, whole=True), "ms", 16.0),
     ]
 
 
@@ -99,6 +103,48 @@ def _repaint(take: Take, *, whole: bool) -> float:
 
     spent = percentile_ms(pan, DRAGS)
     window.close()
+    return spent
+
+
+def _repaint_timeline(take: Take, *, whole: bool) -> float:
+    """Measure panning a timeline with all its lanes full: an hour of sound, cues, spans, flags, pins and notes."""
+    from PySide6.QtWidgets import QApplication
+
+    from app.session import Session
+    from app.theme import DARK
+    from app.timeline.panel import Timeline
+    from engine.formats.audio import Audio
+    from engine.project import Marks, Note, Pin, Span
+    from engine.quality import Flag
+    from engine.speech.lane import attached
+    from engine.speech.visemes import NAMES, Cue
+
+    application = QApplication.instance() or QApplication(["retake"])
+    session = Session(take)
+    shown = Timeline(session, DARK, gutter_px=150)
+    rng, every = np.random.default_rng(0), range(0, len(take) - 60, 300)
+    begins = np.sort(rng.random(round(10 * take.duration_s))) * take.duration_s
+    cues = [Cue(a, b, NAMES[i % len(NAMES)]) for i, (a, b) in enumerate(itertools.pairwise(begins.tolist()))]
+    session.attach_audio(Audio(rng.uniform(-0.5, 0.5, round(8000 * take.duration_s)).astype(np.float32), 8000))
+    session.set_visemes(attached(cues, "an hour"))
+    session.set_flags(
+        tuple(Flag("spike", i, i + 1 + i % 40, (i % 97) / 97, "A spike.") for i in range(0, len(take), 20))
+    )
+    spans = tuple(Span(i, i + 20) for i in every)
+    pins = tuple(Pin(i, {}, i - 9, i + 9) for i in every if i)
+    session.set_marks(Marks(spans, pins, tuple(Note(i, "", "", "a note") for i in every)))
+    session.set_view(0.0, len(take) - 1000.0 if whole else 16 * take.fps)
+    shown.resize(1000, shown.sizeHint().height())
+    shown.show()
+    application.processEvents()
+
+    def pan(index: int) -> None:
+        first, last = session.view
+        session.set_view(first + 1, last + 1)
+        shown.repaint()
+
+    spent = percentile_ms(pan, DRAGS)
+    shown.close()
     return spent
 
 
@@ -162,7 +208,13 @@ def startup_job() -> list[Speed]:
     return [Speed("startup_s", stamp[0], "s", 3.0)]
 
 
-JOBS: dict[str, Callable[[], list[Speed]]] = {"render": render_job, "window": window_job, "startup": startup_job}
+JOBS: dict[str, Callable[[], list[Speed]]] = {
+    "render": render_job,
+    "window": window_job,
+    "playback": playback_job,
+    "saving": saving_job,
+    "startup": startup_job,
+}
 
 if __name__ == "__main__":
     for row in JOBS[sys.argv[1]]():

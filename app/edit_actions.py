@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
+from app.commands import EditCommand
 from app.curve_table import CURVES
 from app.curves.brush import eased_to
 from app.curves.panel import CurvesPanel
@@ -37,6 +38,8 @@ class EditActions(QObject):
         self._session, self._inference, self._curves, self._filling = session, inference, curves, filling
         self._copied: Array | None = None
         self.cutoff_hz: Callable[[], float] = lambda: 6.0
+        self.let_go: Callable[[], bool] = lambda: False  # of what is held on the timeline; whether there was any
+        self.stop_else: Callable[[], bool] = lambda: False  # stops other work under way; whether there was any
 
     def undo(self) -> None:
         """Take back the last step."""
@@ -59,7 +62,7 @@ class EditActions(QObject):
             self._filling.drop()
         elif self._inference.busy:
             self._inference.cancel()
-        else:
+        elif not (self.let_go() or self.stop_else()):
             self._session.select(None)
 
     def close_here(self) -> None:
@@ -81,6 +84,26 @@ class EditActions(QObject):
         start, asked = eased_to(session.curve(session.lane), frames, value, ease_frames=ease_frames)
         self._curves.tool.ask(session.lane, start, asked)
         self._inference.finish(title, kind="set", inputs={"value": value, "frames": list(frames)})
+
+    def hit_exactly(self) -> None:
+        """Let edits hit their curve, believable or not; or let them be believable again."""
+        self._session.set_brush(exact=not self._session.exact)
+
+    def rest_follows(self) -> None:
+        """Let controls that nobody asked for follow those that are dragged; or keep them as the take has them."""
+        self._session.set_brush(follow=not self._session.follow)
+
+    def again(self) -> None:
+        """Take the last edit back and make it again with the settings as they are now."""
+        session = self._session
+        step = session.undo.command(session.undo.index() - 1)
+        if not isinstance(step, EditCommand) or step.asked is None or self._inference.busy:
+            self.told.emit("the last step asked for no curve")
+            return
+        start, asked = step.asked
+        self.undo()
+        self._inference.ask(start, asked)
+        self._inference.finish(step.text(), kind=step.edit.kind, inputs=step.edit.inputs)
 
     def copy(self) -> None:
         """Remember the weights of the selection, or of the frame at the playhead."""
@@ -155,6 +178,10 @@ class EditActions(QObject):
     def live_tool(self) -> None:
         """Work with a phone's stream."""
         self._session.choose_tool("live")
+
+    def show_removed(self) -> None:
+        """Draw what the Clean tool would remove, or not."""
+        self._session.show_removed(shown=not self._session.shows_removed)
 
     def clean_tool(self) -> None:
         """Work with the Clean tool."""

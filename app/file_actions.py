@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -13,12 +15,14 @@ from app.playback.media import Media
 from app.session import Session
 from app.settings import Settings
 from engine.errors import EngineError
-from engine.formats import FORMATS, read_take, write_take
+from engine.formats import FORMATS, cues, read_take, write_take
 from engine.formats.characters.opening import character_of
+from engine.project import ENDING
 from engine.take import Take
 
-PROJECT = ".retake"
+CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 Answer = QMessageBox.StandardButton
+CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 
 
 class FileActions(QObject):
@@ -33,64 +37,77 @@ class FileActions(QObject):
 
     told = Signal(str, str)  # sentence, advice
     opened = Signal()
+    capture_dropped = Signal(object)  # the path of a file of markers
     character_chosen = Signal(object)  # a Character, or None for the bundled one
+    cues_dropped = Signal(object)  # the Path of a file that says what is said when
 
     def __init__(self, session: Session, keeper: Keeper, media: Media, settings: Settings, window: QWidget) -> None:
         super().__init__()
         self._session, self._keeper, self._media = session, keeper, media
         self._settings, self._window = settings, window
+        keeper.saved.connect(settings.remember)
 
     def load(self, path: Path, *_: object) -> bool:
         """Open a take or a project; what is open stays as it was where the file cannot be read."""
-        is_project = path.suffix.lower() == PROJECT
         try:
-            take = None if is_project else read_take(path)
-            if not self.may_lose_edits():
-                return False
+            take = None if path.suffix.lower() == ENDING else read_take(path)
+        except EngineError as error:
+            self.told.emit(error.sentence, error.advice)
+            return False
+        before = self._session.original
+        self.when_safe(partial(self._open, path, take))
+        return self._session.original is not before
+
+    def _open(self, path: Path, take: Take | None) -> None:
+        """Open a take that was read, or a project, in place of what is open."""
+        try:
             if take is None:
                 self._keeper.open(path)
-                if self._keeper.path is None:
-                    self.told.emit(
-                        f"{path.name} cannot be written here; your edits are kept as unsaved work.",
-                        "Save it under another name.",
-                    )
             else:
                 self._session.open(take, path)
         except EngineError as error:
             self.told.emit(error.sentence, error.advice)
-            return False
+            return
         self._settings.remember(path)
         self.opened.emit()
-        return True
+        if take is None and self._keeper.path is None:
+            self.told.emit(
+                f"{path.name} cannot be written here; your edits are kept as unsaved work.",
+                "Save it under another name.",
+            )
 
     def take_in(self, path: Path) -> None:
         """Open or attach a file, by its ending."""
         ending = path.suffix.lower()
         if ending in media.ENDINGS:
-            self._media.attach(path)
+            self._media.attach("audio", path)
         elif ending in media.FILM_ENDINGS:
-            self._session.attach_video(path)
+            self._media.attach("video", path)
+        elif ending in cues.READERS:
+            self.cues_dropped.emit(path)
+        elif ending in CAPTURES:
+            self.capture_dropped.emit(path)
         else:
             self.load(path)
 
     def open_take(self) -> None:
         """Choose a file to open."""
         endings = " ".join(f"*{ending}" for entry in FORMATS for ending in entry.endings)
-        kinds = f"Takes and projects ({endings} *{PROJECT})"
+        kinds = f"Takes and projects ({endings} *{ENDING})"
         name, _ = QFileDialog.getOpenFileName(self._window, "Open", "", kinds)
         if name:
             self.load(Path(name))
 
     def save(self) -> bool:
-        """Save the project where it was saved before, or ask where."""
+        """Save the project where it was saved before, or ask where; returns whether it is on its way."""
         return self._save_to(self._keeper.path) if self._keeper.path else self.save_as()
 
     def save_as(self) -> bool:
         """Choose a file and save the project: the original, every edit, and what can be undone."""
         stem = Path(self._session.name).stem
-        kind = f"Retake project (*{PROJECT})"
-        name, _ = QFileDialog.getSaveFileName(self._window, "Save the project", self._beside(f"{stem}{PROJECT}"), kind)
-        return bool(name) and self._save_to(Path(name).with_suffix(PROJECT))
+        kind = f"Retake project (*{ENDING})"
+        name, _ = QFileDialog.getSaveFileName(self._window, "Save the project", self._beside(f"{stem}{ENDING}"), kind)
+        return bool(name) and self._save_to(Path(name).with_suffix(ENDING))
 
     def export(self) -> bool:
         """Choose a file and write the edited take as other programs read it."""
@@ -112,9 +129,13 @@ class FileActions(QObject):
 
     def open_recording(self, take: Take) -> None:
         """Open what was recorded live, unless edits would be lost."""
-        if self.may_lose_edits():
+
+        def show() -> None:
             self._session.open(take, None)
+            self._keeper.keep()
             self.opened.emit()
+
+        self.when_safe(show)
 
     def load_character(self) -> None:
         """Choose a head to show the take on; none goes back to the bundled one."""
@@ -125,24 +146,15 @@ class FileActions(QObject):
         except EngineError as error:
             self.told.emit(error.sentence, error.advice)
 
-    def attach_audio(self) -> None:
-        """Choose a recording to play along with the take."""
-        kinds = " ".join(f"*{ending}" for ending in media.ENDINGS + media.FILM_ENDINGS)
-        name, _ = QFileDialog.getOpenFileName(self._window, "Attach sound", "", f"Sound ({kinds})")
-        if name:
-            self._media.attach(Path(name))
+    def when_safe(self, then: Callable[[], None]) -> None:
+        """Do what closes the open take: at once, or when its edits are saved, or never, as the user says."""
+        if not self._keeper.when_idle(partial(self._ask, then)):
+            self.told.emit(f"{self._session.name} is being saved; then it is closed.", "You may go on working.")
 
-    def attach_video(self) -> None:
-        """Choose a video to watch beneath the face."""
-        kinds = " ".join(f"*{ending}" for ending in media.FILM_ENDINGS)
-        name, _ = QFileDialog.getOpenFileName(self._window, "Attach a reference video", "", f"Videos ({kinds})")
-        if name:
-            self._session.attach_video(Path(name))
-
-    def may_lose_edits(self) -> bool:
-        """Ask about edits that are not saved; returns whether one may go on."""
+    def _ask(self, then: Callable[[], None]) -> None:
         if not self._session.edited:
-            return True
+            then()
+            return
         answer = QMessageBox.question(
             self._window,
             "Unsaved edits",
@@ -151,8 +163,9 @@ class FileActions(QObject):
         )
         if answer == Answer.Discard:
             self._keeper.forget()
-            return True
-        return answer == Answer.Save and self.save()
+            then()
+        elif answer == Answer.Save and self.save():
+            self.when_safe(then)
 
     def offer_left_over(self) -> None:
         """Offer the work of a program that ended early."""
@@ -178,13 +191,8 @@ class FileActions(QObject):
             self.told.emit(error.sentence, error.advice)
 
     def _save_to(self, path: Path) -> bool:
-        try:
-            self._keeper.save_as(path)
-        except EngineError as error:
-            self.told.emit(error.sentence, error.advice)
-            return False
-        self._settings.remember(path)
-        self.opened.emit()
+        self._media.settle_in(path.parent)
+        self._keeper.save_as(path)
         return True
 
     def _beside(self, name: str) -> str:

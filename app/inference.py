@@ -23,10 +23,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """A verb to carry out on a take whose controls, (frames, 8), are known; `since` is when the user asked."""
+    """A verb to carry out on a take whose controls and what was asked of them, (frames, 8), are known.
+
+    `since` is when the user asked.
+    """
 
     take: Take
     controls: Array
+    asked: Array
     verb: Verb
     since: float = field(default_factory=time.perf_counter)
 
@@ -49,6 +53,8 @@ class Inference(QObject):
         self._last: Request | None = None
         self._shown: Request | None = None  # whose result is the draft
         self._kind, self._inputs = "drag", dict[str, Any]()
+        self._curves: tuple[int, Array] | None = None  # what was asked of the controls, if anything was
+        self._modes = dict[str, bool]()  # how
         self._marks: Marks | None = None
         self._title: str | None = None  # set on release: the step to make of the last request's result
         self.since = 0.0  # when the draft on screen was asked for
@@ -73,15 +79,21 @@ class Inference(QObject):
 
     def ask(self, start: int, asked: Array) -> None:
         """Show what the face does for asked curves, (n, 8) in mm, on the frames from `start`."""
-        exact = self._session.exact
-        self.run(lambda dragger: dragger.drag(start, asked, exact_curve=exact))
+        exact, follow = self._session.exact, self._session.follow
+        if self._submit(lambda dragger: dragger.drag(start, asked, exact_curve=exact, follow=follow)):
+            self._curves, self._modes = (start, asked), {"exact": exact, "follow": follow}
 
     def run(self, verb: Verb) -> None:
         """Show what a verb does; it is called on the background thread."""
+        if self._submit(verb):
+            self._curves, self._modes = None, {}
+
+    def _submit(self, verb: Verb) -> bool:
         if self._title is not None:
-            return  # the edit before is being finished; it takes a few milliseconds
-        self._last = Request(self._session.take, self._session.controls, verb)
+            return False  # the edit before is being finished; it takes a few milliseconds
+        self._last = Request(self._session.take, self._session.controls, self._session.asked, verb)
         self._work.submit(self._last)
+        return True
 
     def finish(
         self,
@@ -97,7 +109,7 @@ class Inference(QObject):
         """
         if self._last is None:
             return
-        self._title, self._kind, self._inputs, self._marks = title, kind, dict(inputs or {}), marks
+        self._title, self._kind, self._inputs, self._marks = title, kind, {**(inputs or {}), **self._modes}, marks
         draft = self._session.draft
         if draft is not None and self._shown is self._last:
             self._commit(draft)
@@ -119,7 +131,7 @@ class Inference(QObject):
             editing.warm_up()
             return None
         if self._dragger is None or self._dragger.take is not request.take:
-            self._dragger = editing.Dragger(request.take, request.controls)
+            self._dragger = editing.Dragger(request.take, request.controls, asked=request.asked)
         return request.verb(self._dragger)
 
     def _arrived(self, request: Request | None, patch: Patch | None) -> None:
@@ -148,3 +160,6 @@ class Inference(QObject):
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
             self._last = self._title = None
+        modes = {"exact": self._session.exact, "follow": self._session.follow}
+        if change & Change.TOOL and self.busy and self._curves is not None and modes != self._modes:
+            self.ask(*self._curves)

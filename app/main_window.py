@@ -4,22 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import (
-    QCloseEvent,
-    QDragEnterEvent,
-    QDropEvent,
-    QKeyEvent,
-    QShowEvent,
-)
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QShowEvent
 from PySide6.QtWidgets import (
     QApplication,
     QFrame,
     QHBoxLayout,
-    QLabel,
     QMainWindow,
-    QMessageBox,
     QScrollArea,
     QSplitter,
     QVBoxLayout,
@@ -27,37 +18,44 @@ from PySide6.QtWidgets import (
 )
 
 from app import theme
-from app.actions import ACTIONS, keys_of
 from app.clean.section import CleanSection
 from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
 from app.curves.tools import TOOLS
 from app.edit_actions import EditActions
 from app.file_actions import FileActions
+from app.flagging import Flagging
 from app.inference import Inference
 from app.inspector.brush import BrushSection
 from app.inspector.facts import FactsSection
+from app.inspector.media import MediaSection
 from app.inspector.panel import Inspector
 from app.inspector.smooth import SmoothSection
 from app.inspector.value import ValueSection
 from app.keeper import Keeper
 from app.live.section import LiveSection
+from app.media_actions import MediaActions
 from app.menus import Menus
+from app.missing import MissingMedia
 from app.notes.section import NotesSection
 from app.notices import Notices
 from app.pins.section import PinsSection
 from app.playback.media import Media
 from app.preview.panel import PreviewPanel
 from app.preview.reference import ReferencePanel
-from app.session import Change, Session
+from app.retarget.actions import RetargetActions
+from app.session import MEDIA, Change, Session
 from app.settings import Settings
+from app.settings_actions import SettingsActions
 from app.spans.filling import Filling
 from app.spans.section import SpansSection
+from app.status import StatusBar
 from app.theme import GRID
 from app.time_actions import TimeActions
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.transport import Transport
-from engine.take import Take, timecode
+from app.viseme_actions import VisemeActions
+from engine.take import Take
 
 
 class MainWindow(QMainWindow):
@@ -80,47 +78,56 @@ class MainWindow(QMainWindow):
     ) -> None:
         super().__init__()
         self.settings = settings or Settings()
-        self.colours = theme.LIGHT if self.settings.light else theme.DARK
+        self.colours = theme.palette(self.settings.theme)
         self.session = Session(take)
         self.keeper = Keeper(self.session, unsaved)
         self.inference = Inference(self.session)
         self.transport = Transport(self.session)
-        self.media = Media(self.session, self.transport)
+        self.media = Media(self.session, self.transport, settings=self.settings)
         self.files = FileActions(self.session, self.keeper, self.media, self.settings, self)
-        self.notices = Notices()
+        self.sound = MediaActions(self.session, self.media, self)
+        self.status = StatusBar(self.session, self.keeper, self.media)
+        self.notices, self.missing = Notices(), MissingMedia()
         self.preview = PreviewPanel(self.session, self.inference)
         self.reference = ReferencePanel(self.session)
         self.curves = CurvesPanel(self.session, self.inference, self.colours)
         self.timeline = Timeline(self.session, self.colours, gutter_px=GUTTER_PX)
         self.filling = Filling(self.session)
         self.edits = EditActions(self.session, self.inference, self.curves, self.filling)
+        self.flagging = Flagging(self.session)
+        self.visemes = VisemeActions(self.session, self.timeline.visemes, self)
         self.time = TimeActions(self.session, self.transport, self.filling)
         self.brush, self.value = BrushSection(self.session), ValueSection(self.session)
         self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
-        self.smoothing = SmoothSection(self.session)
+        self.smoothing, self.facts = SmoothSection(self.session), FactsSection(self.session)
         self.spans = SpansSection(self.session, self.filling)
-        self.live = LiveSection(self.session)
+        self.live = LiveSection(self.session, self.keeper.folder)
+        self.attached = MediaSection(self.session)
         self.notes = NotesSection(self.session)
+        self.retarget = RetargetActions(self.session, self)
         sections = (
             self.brush,
             self.value,
             self.pins,
             self.clean,
             self.live,
+            *self.retarget.sections,
             self.smoothing,
             self.spans,
-            FactsSection(self.session),
+            self.facts,
+            self.attached,
             self.notes,
         )
         self.inspector = Inspector(self.session, sections)
-        self._latencies_ms: list[float] = []
+        self._closed = False
         self.setAcceptDrops(True)
         self.menus = Menus(self, self.settings, self._do, self.files.load)
         self.actions_by_name = self.menus.actions
+        self.preferences = SettingsActions(self.settings, self.menus, self.media, self)
         self._show_tool()
         self._lay_out()
         self._connect()
-        self.setStyleSheet(theme.style_sheet(self.colours))
+        self.preferences.apply_all()
         self.resize(1440, 900)
         self.session.open(take, path)
         self._show_opened()
@@ -128,7 +135,7 @@ class MainWindow(QMainWindow):
     # --- building
 
     def _do(self, name: str) -> None:
-        owners = (self, self.files, self.edits, self.time)
+        owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.retarget, self.preferences)
         owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
 
@@ -170,47 +177,48 @@ class MainWindow(QMainWindow):
         column.setSpacing(GRID)
         column.addWidget(self.menus.toolbar())
         column.addWidget(self.notices)
+        column.addWidget(self.missing)
         column.addLayout(middle, 1)
-        column.addWidget(self._status())
+        column.addWidget(self.status)
         self.setCentralWidget(central)
-
-    def _status(self) -> QFrame:
-        bar = QFrame()
-        bar.setProperty("panel", True)
-        row = QHBoxLayout(bar)
-        row.setContentsMargins(GRID + 2, 3, GRID + 2, 3)
-        row.setSpacing(3 * GRID)
-        self.status = {
-            name: QLabel() for name in ("take", "rate", "length", "place", "notice", "engine", "saved", "speed")
-        }
-        for name, label in self.status.items():
-            label.setProperty("quiet", name != "take")
-            row.addWidget(label, 1 if name == "notice" else 0)
-        self.status["engine"].setText("loading networks…")
-        return bar
 
     def _connect(self) -> None:
         self.session.changed.connect(self._on_change)
-        self.inference.failed.connect(self.notices.tell)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        for part in (self.preview, self.media, self.reference):
+        shown = (self.preview, self.media, self.reference, self.live, self.retarget)
+        for part in (*shown, self.inference, self.filling, self.keeper, self.visemes, self.timeline.visemes):
             part.failed.connect(self.notices.tell)
-        self.preview.timed.connect(self._timed)
+        self.preview.timed.connect(self.status.timed)
+        self._connect_media()
+        self.notes.author = lambda: self.settings.author
+        self.preferences.themed.connect(self._wear)
+        for clock in (self.timeline, self.status):
+            self.preferences.counted.connect(clock.count_in_frames)
         self.transport.changed.connect(self._show_transport)
         self.value.close_here.connect(self.edits.close_here)
         self.value.typed.connect(self.edits.set_value)
+        self.facts.again.connect(self.edits.again)
         self.smoothing.moved.connect(self.edits.preview_smoothing)
         self.smoothing.kept.connect(self.edits.smooth)
         self.smoothing.dropped.connect(self.inference.cancel)
         self.edits.cutoff_hz = self.smoothing.cutoff.value
+        self.edits.let_go = self.timeline.visemes.drop
         self.edits.told.connect(self.status["notice"].setText)
         self.time.looping = self.actions_by_name["loop"].isChecked
-        self.filling.failed.connect(self.notices.tell)
-        self.live.failed.connect(self.notices.tell)
         self.live.face.connect(self.preview.show_live)
+        self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
+        self.retarget.shown.connect(self.preview.show_sides)
+        self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
+        self.preview.picked.connect(self.retarget.pick)
+        self.preview.dot_clicked.connect(self.retarget.placing.choose)
+        self.edits.stop_else = self.retarget.retargeting.cancel
+        self.files.capture_dropped.connect(self.retarget.take_in)
         self.files.character_chosen.connect(self.preview.show_character)
-        self.keeper.failed.connect(self.notices.tell)
+        self.keeper.saved.connect(self._show_saved)
+        self.keeper.mended.connect(self.notices.withdraw)
+        self.timeline.visemes.wanted.connect(self._do)
+        self.files.cues_dropped.connect(self.visemes.attach)
         self.files.told.connect(self.notices.tell)
         self.files.opened.connect(self._show_opened)
         self.filling.changed.connect(self._show_filling)
@@ -220,10 +228,21 @@ class MainWindow(QMainWindow):
         self.preview.strip_drawn.connect(self.spans.strip.show_picture)
         self.session.undo.indexChanged.connect(self._show_undo)
         self._show_undo()
+        self._show_missing()
         self._show_filling()
         application = QApplication.instance()
         if application is not None:
             application.installEventFilter(self)
+
+    def _connect_media(self) -> None:
+        self.media.missing_changed.connect(self._show_missing)
+        self.missing.locate.connect(self.sound.locate)
+        self.missing.accept.connect(self.sound.use_found)
+        self.missing.detach.connect(self.media.detach)
+        self.attached.detached.connect(self.media.detach)
+        self.reference.detached.connect(self.sound.detach_video)
+        self.attached.moved.connect(self.media.move)
+        self.timeline.slid.connect(self.media.settle)
 
     def showEvent(self, event: QShowEvent) -> None:
         """Load the networks once the window can be seen."""
@@ -242,6 +261,15 @@ class MainWindow(QMainWindow):
         self.notices.hide()
         self.status["notice"].setText(" ".join(self.session.take.notices))
         self._show_title()
+        self.status.show_take()
+
+    def _show_saved(self, *_: object) -> None:
+        self.notices.hide()
+        self._show_title()
+
+    def _show_missing(self) -> None:
+        self.missing.show_missing(self.media.missing)
+        self.actions_by_name["locate_media"].setEnabled(bool(self.media.missing))
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Accept files."""
@@ -255,12 +283,15 @@ class MainWindow(QMainWindow):
             self.files.take_in(paths[0])
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        """Ask for unsaved edits, then end the threads."""
-        if not self.files.may_lose_edits():
-            event.ignore()
-            return
+        """Ask for unsaved edits, wait until all is written, then end the threads."""
+        if not self._closed:
+            self.files.when_safe(self._leave)
+        event.setAccepted(self._closed)
+
+    def _leave(self) -> None:
         self.shut_down()
-        event.accept()
+        self._closed = True
+        self.close()
 
     def shut_down(self) -> None:
         """End the threads; the window cannot be used after."""
@@ -268,16 +299,24 @@ class MainWindow(QMainWindow):
         if application is not None:
             application.removeEventFilter(self)
         self.transport.run(0.0)
-        self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
+        self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.keeper.close()
         self.inference.close()
         self.media.close()
         self.reference.close_reader()
         self.filling.close()
-        self.live.stop()
+        self.flagging.close()
+        self.visemes.close()
+        self.live.shut_down()
+        self.retarget.retargeting.close()
         self.preview.close_renderer()
+        self.preferences.close()
 
     # --- the window
+
+    def quit(self) -> None:
+        """End the program; what is not saved is kept for the next start."""
+        self.close()
 
     def fill(self) -> None:
         """Fill the chosen span, or the selection."""
@@ -299,37 +338,15 @@ class MainWindow(QMainWindow):
     def _show_tool(self) -> None:
         for name in TOOLS:
             self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
+        self.actions_by_name["hit_exactly"].setChecked(self.session.exact)
+        self.actions_by_name["rest_follows"].setChecked(self.session.follow)
+        self.actions_by_name["show_removed"].setChecked(self.session.shows_removed)
 
-    def light_theme(self) -> None:
-        """Switch between dark and light."""
-        self.settings.light = self.actions_by_name["light_theme"].isChecked()
-        self.colours = theme.LIGHT if self.settings.light else theme.DARK
-        self.setStyleSheet(theme.style_sheet(self.colours))
-        self.curves.paint_with(self.colours)
-        self.timeline.paint_with(self.colours)
-
-    def show_keys(self) -> None:
-        """List every key."""
-        rows = "".join(
-            f"<tr><td style='padding:2px 16px 2px 0'>{entry.title}</td><td>{', '.join(keys)}</td></tr>"
-            for entry in ACTIONS
-            if (keys := keys_of(entry, self.settings.preset))
-        )
-        extra = "<tr><td>See the original</td><td>hold B</td></tr>"
-        self._tell("Keys", f"<table>{rows}{extra}</table>")
-
-    def about(self) -> None:
-        """Say what this is and which versions it runs on."""
-        from app.about import describe
-
-        self._tell("About Retake", describe().replace("\n", "<br>"))
-
-    def _tell(self, title: str, text: str) -> None:
-        box = QMessageBox(self)
-        box.setWindowTitle(title)
-        box.setText(text)
-        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        box.open()
+    def _wear(self, colours: theme.Palette) -> None:
+        self.colours = colours
+        self.setStyleSheet(theme.style_sheet(colours))
+        self.curves.paint_with(colours)
+        self.timeline.paint_with(colours)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Show the original for as long as B is held."""
@@ -351,34 +368,19 @@ class MainWindow(QMainWindow):
     # --- showing
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.PLAYHEAD):
-            self._show_place()
         if change & (Change.TAKE | Change.CURVES | Change.SAVED):
-            self._show_saved()
+            self.setWindowModified(self.session.edited)
+        if change & (Change.TAKE | Change.MARKS | Change.MEDIA):
+            for kind in MEDIA:
+                self.actions_by_name[f"detach_{kind}"].setEnabled(self.session.marks.medium(kind) is not None)
         if change & Change.CURVES:
             self.menus.hints.hide()
         if change & Change.TOOL:
             self._show_tool()
 
-    def _show_title(self) -> None:
-        take = self.session.take
+    def _show_title(self, *_: object) -> None:
         self.setWindowTitle(f"{self.session.name}[*] - Retake")
-        self.status["take"].setText(self.session.name)
-        self.status["rate"].setText(f"{take.fps:g} fps")
-        self.status["length"].setText(f"{len(take):,} frames · {timecode(take.duration_s, take.fps)}")
-        self._show_place()
-        self._show_saved()
-
-    def _show_place(self) -> None:
-        session = self.session
-        self.status["place"].setText(
-            f"{timecode(session.playhead / session.take.fps, session.take.fps)} · {session.playhead}"
-        )
-
-    def _show_saved(self) -> None:
         self.setWindowModified(self.session.edited)
-        saved = "saved" if self.keeper.path else ""
-        self.status["saved"].setText("edits not saved yet" if self.session.edited else saved)
 
     def _show_undo(self, *_: int) -> None:
         stack = self.session.undo
@@ -394,7 +396,3 @@ class MainWindow(QMainWindow):
     def _show_transport(self) -> None:
         self.actions_by_name["play"].setChecked(self.transport.playing)
         self.actions_by_name["play"].setIconText("❚❚" if self.transport.playing else "▶")
-
-    def _timed(self, spent_ms: float) -> None:
-        self._latencies_ms = [*self._latencies_ms[-19:], spent_ms]
-        self.status["speed"].setText(f"drag → preview {np.median(self._latencies_ms):.0f} ms")

@@ -53,7 +53,6 @@ class Menus(QObject):
         self._recent = self._menus["File"].addMenu("Open recent")
         self._recent.aboutToShow.connect(self._fill_recent)
         self.hints = QLabel(HINTS)
-        self.actions["light_theme"].setChecked(settings.light)
         self._offer_presets()
 
     def _offer_presets(self) -> None:
@@ -62,13 +61,14 @@ class Menus(QObject):
         for name in PRESETS:
             action = self._presets.addAction(menu.addAction(name))
             action.setCheckable(True)
-            action.setChecked(name == self._settings.preset)
             action.triggered.connect(partial(self.use_preset, name))
         self.use_preset(self._settings.preset)
 
     def use_preset(self, name: str, *_: bool) -> None:
         """Use the shortcuts of a named program."""
         self._settings.preset = name
+        for action in self._presets.actions():
+            action.setChecked(action.text() == name)
         for entry in ACTIONS:
             keys = keys_of(entry, name)
             self.actions[entry.name].setShortcuts([QKeySequence(key) for key in keys])

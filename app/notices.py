@@ -33,6 +33,11 @@ class Notices(QFrame):
         """Put another sentence after what is shown."""
         self.tell(self.text.text(), sentence)
 
+    def withdraw(self, sentence: str) -> None:
+        """Put a sentence away that is true no more, if it is still shown."""
+        if self.text.text().startswith(sentence):
+            self.hide()
+
     def tell(self, sentence: str, advice: str = "") -> None:
         """Show a sentence and an advice until it is put away or replaced."""
         log.warning("%s %s", sentence, advice)

@@ -15,9 +15,11 @@ class Section(QWidget):
     Attributes
     ----------
     tools : the tools it is shown with; empty for always
+    needed : whether it has anything to show
     """
 
     tools: frozenset[str] = frozenset()
+    needed = True
 
     def __init__(self, session: Session, title: str) -> None:
         super().__init__()

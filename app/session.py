@@ -12,9 +12,12 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
+from engine import quality
+from engine.character import Character
 from engine.controls import CONTROLS, bundled_measurer
 from engine.formats.audio import Audio
 from engine.project import Contents, Marks, Replayed, Span
+from engine.speech.lane import VisemeLane
 from engine.take import Array, Take, runs
 
 if TYPE_CHECKING:
@@ -22,6 +25,8 @@ if TYPE_CHECKING:
 
 FIRST_VIEW_S = 16.0
 BRUSH_S = 0.5
+MAX_OFFSET_S = 36_000.0  # of sound and video
+MEDIA = ("audio", "video")  # the kinds that may be attached
 
 
 class Change(Flag):
@@ -39,6 +44,9 @@ class Change(Flag):
     SAVED = auto()
     MEDIA = auto()  # sound or reference video
     MARKS = auto()  # spans, pins, notes, media or the verdict
+    VISEMES = auto()  # what is said when
+    FLAGS = auto()  # what was found automatically
+    CHARACTER = auto()  # whose head the weights are for
 
 
 class Session(QObject):
@@ -58,10 +66,17 @@ class Session(QObject):
     lane : the curve that is worked on, an index into CURVES
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
-    radius_frames, strength, exact : the Drag tool's brush
-    audio, audio_offset_s : the recording of the sound, and the time in the take at which it begins
-    video, video_offset_s : the file of the reference video, likewise
+    radius_frames, strength : the Drag tool's brush
+    exact, follow : whether edits hit the curve exactly, and whether controls that nobody asked for follow
+    shows_removed : whether the Clean tool draws what it would remove
+    audio : the recording of the sound, None where there is none, or it is not found
+    video : the file of the reference video, likewise
+    sliding : the kind of what is being moved in time, and where it is by now; None between moves
     marks : spans, pins, notes, media and verdict
+    visemes : what is said when, or None
+    flags : what was found automatically, by the first frame; None while it is looked for
+    touched : the half-open range of frames that changed last
+    character : whose head the weights are for; None for the bundled one
     """
 
     changed = Signal(object)
@@ -70,8 +85,10 @@ class Session(QObject):
         super().__init__()
         self.undo = QUndoStack(self)
         self.path: Path | None = None
-        self.strength, self.exact, self.tool = 1.0, False, "drag"
+        self.strength, self.exact, self.follow, self.tool = 1.0, False, True, "drag"
+        self.shows_removed = True
         self._restoring = False
+        self.character: Character | None = None
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
 
@@ -84,6 +101,9 @@ class Session(QObject):
         self.controls = self.original_controls = measured
         self.asked = np.full_like(measured, np.nan)
         self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
+        self.visemes: VisemeLane | None = None
+        self.flags: tuple[quality.Flag, ...] | None = None
+        self.touched = (0, len(take))
         self.draft: Patch | None = None
         self.selection: tuple[int, int] | None = None
         self.lane = 0
@@ -91,11 +111,12 @@ class Session(QObject):
         self.radius_frames = max(2, round(BRUSH_S * take.fps))
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
+        other_head, self.character = self.character is not None, None
         self.audio: Audio | None = None
         self.video: Path | None = None
-        self.audio_offset_s = self.video_offset_s = 0.0
+        self.sliding: tuple[str, float] | None = None
         self.undo.clear()
-        self.changed.emit(Change.TAKE)
+        self.changed.emit(Change.TAKE | Change.CHARACTER if other_head else Change.TAKE)
 
     def restore(self, contents: Contents, path: Path | None, steps: Iterable[QUndoCommand], state: Replayed) -> None:
         """Replace everything by what a project holds: its edits as `steps`, which come to `state`."""
@@ -111,6 +132,7 @@ class Session(QObject):
             self._restoring = False
             self.blockSignals(False)
         self.take, self.asked, self.marks = state.take, state.asked, contents.marks
+        self.visemes = state.visemes
         measured = bundled_measurer().measure(self.take.weights)
         measured.flags.writeable = False
         self.controls = measured
@@ -126,8 +148,25 @@ class Session(QObject):
     def set_marks(self, marks: Marks) -> None:
         """Put other spans, pins, notes, media or another verdict in place."""
         if marks != self.marks:
+            media = marks.media != self.marks.media
             self.marks = marks
-            self.changed.emit(Change.MARKS)
+            self.changed.emit(Change.MARKS | Change.MEDIA if media else Change.MARKS)
+
+    def set_visemes(self, visemes: VisemeLane | None) -> None:
+        """Put another visemes lane in place; for commands only."""
+        if visemes is not self.visemes and not self._restoring:
+            self.visemes = visemes
+            self.changed.emit(Change.VISEMES)
+
+    def set_flags(self, flags: tuple[quality.Flag, ...]) -> None:
+        """Show what was found automatically."""
+        self.flags = flags
+        self.changed.emit(Change.FLAGS)
+
+    def play_on(self, character: Character | None) -> None:
+        """Say whose head the weights are for; None is the bundled one."""
+        self.character = character
+        self.changed.emit(Change.CHARACTER)
 
     def _on_clean_changed(self, _: bool) -> None:
         self.changed.emit(Change.SAVED)
@@ -198,6 +237,7 @@ class Session(QObject):
         self.controls = _with_rows(self.controls, start, controls)
         self.asked = _with_rows(self.asked, start, asked)
         self.draft = None
+        self.touched = (start, stop)
         self.changed.emit(Change.CURVES | Change.DRAFT)
         assert stop <= len(self.take)
 
@@ -241,14 +281,27 @@ class Session(QObject):
             self.selection = frames
             self.changed.emit(Change.SELECTION)
 
-    def attach_audio(self, audio: Audio | None, offset_s: float = 0.0) -> None:
+    def attach_audio(self, audio: Audio | None) -> None:
         """Play a recording along with the take, or none."""
-        self.audio, self.audio_offset_s = audio, offset_s
+        self.audio = audio
         self.changed.emit(Change.MEDIA)
 
-    def attach_video(self, path: Path | None, offset_s: float = 0.0) -> None:
+    def attach_video(self, path: Path | None) -> None:
         """Show a reference video beside the face, or none."""
-        self.video, self.video_offset_s = path, offset_s
+        self.video = path
+        self.changed.emit(Change.MEDIA)
+
+    def offset_s(self, kind: str) -> float:
+        """Return the time in the take at which the sound (audio) or the video begins."""
+        if self.sliding is not None and self.sliding[0] == kind:
+            return self.sliding[1]
+        record = self.marks.medium(kind)
+        return 0.0 - record.offset_s if record is not None else 0.0
+
+    def slide(self, kind: str, offset_s: float | None) -> None:
+        """Show what another beginning of the sound or the video does; None goes back to what is kept."""
+        limit = MAX_OFFSET_S
+        self.sliding = (kind, float(np.clip(offset_s, -limit, limit))) if offset_s is not None else None
         self.changed.emit(Change.MEDIA)
 
     def choose_lane(self, lane: int) -> None:
@@ -273,8 +326,19 @@ class Session(QObject):
             self.tool = name
             self.changed.emit(Change.TOOL)
 
+    def show_removed(self, *, shown: bool) -> None:
+        """Let the Clean tool draw what it would remove, or not."""
+        if shown != self.shows_removed:
+            self.shows_removed = shown
+            self.changed.emit(Change.TOOL)
+
     def set_brush(
-        self, *, radius_frames: int | None = None, strength: float | None = None, exact: bool | None = None
+        self,
+        *,
+        radius_frames: int | None = None,
+        strength: float | None = None,
+        exact: bool | None = None,
+        follow: bool | None = None,
     ) -> None:
         """Change the Drag tool."""
         if radius_frames is not None:
@@ -283,6 +347,8 @@ class Session(QObject):
             self.strength = float(np.clip(strength, 0.0, 1.0))
         if exact is not None:
             self.exact = exact
+        if follow is not None:
+            self.follow = follow
         self.changed.emit(Change.TOOL)
 
 

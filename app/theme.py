@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 GRID = 8  # px
+ICONS = (Path(__file__).parent.parent / "assets" / "icons").as_posix()
 FONT_PX = 12
 # Okabe and Ito's order, fit for every kind of colour vision; the last two are lightened for dark ground.
 LANES = ("#56B4E9", "#E69F00", "#2BB88F", "#F0E442", "#CC79A7", "#E8743B", "#8FB4FF", "#B9BEC8")
@@ -27,6 +29,7 @@ class Palette:
     warning: str
     good: str
     lanes: tuple[str, ...]
+    check: str  # icon of a ticked box
 
 
 DARK = Palette(
@@ -42,6 +45,7 @@ DARK = Palette(
     warning="#E69F00",
     good="#009E73",
     lanes=LANES,
+    check="check",
 )
 LIGHT = Palette(
     ground="#e9ebef",
@@ -56,7 +60,18 @@ LIGHT = Palette(
     warning="#9A6A00",
     good="#007355",
     lanes=LANES_ON_LIGHT,
+    check="check_on_light",
 )
+
+
+def palette(name: str) -> Palette:
+    """Return a theme by name: dark, light, or as the system has it."""
+    if name == "system":
+        from PySide6.QtCore import Qt
+        from PySide6.QtGui import QGuiApplication
+
+        name = "light" if QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Light else "dark"
+    return LIGHT if name == "light" else DARK
 
 
 def style_sheet(colours: Palette) -> str:
@@ -87,12 +102,14 @@ QSlider::handle:horizontal {{ width: 12px; height: 12px; margin: -4px 0; border-
 QSlider {{ border: 1px solid transparent; border-radius: 4px; min-height: 18px; }}
 QCheckBox::indicator {{
   width: 12px; height: 12px; border: 1px solid {c.quiet}; border-radius: 3px; background: {c.ground}; }}
-QCheckBox::indicator:checked {{ background: {c.accent}; border-color: {c.accent}; }}
+QCheckBox::indicator:checked {{ background: {c.accent}; border-color: {c.accent}; image: url("{ICONS}/{c.check}.svg"); }}
 QCheckBox {{ border: 1px solid transparent; border-radius: 4px; padding: 2px; spacing: 8px; }}
 QDoubleSpinBox, QSpinBox, QLineEdit, QComboBox, QPlainTextEdit, QListWidget, QTreeWidget, QTableWidget {{
   background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; padding: 3px 6px;
   selection-background-color: {c.accent}; selection-color: {c.on_accent}; }}
 QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
+QComboBox::drop-down {{ border: none; width: 20px; }}
+QComboBox::down-arrow {{ image: url("{ICONS}/down.svg"); width: 10px; height: 6px; }}
 QComboBox QAbstractItemView {{ background: {c.panel}; border: 1px solid {c.edge}; }}
 QHeaderView::section {{ background: {c.panel}; color: {c.quiet}; border: none; padding: 3px 6px; }}
 QMenuBar {{ background: {c.ground}; }}

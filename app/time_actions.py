@@ -67,18 +67,31 @@ class TimeActions(QObject):
         self._session.move_playhead(len(self._session.take) - 1)
 
     def next_span(self) -> None:
-        """Go to the next span and choose it."""
-        later = [span for span in self._session.marks.spans if span.start > self._session.playhead]
-        if later:
-            self._session.select((later[0].start, later[0].stop))
-            self._session.move_playhead(later[0].start)
+        """Go to the next flag, or to the next span and choose it."""
+        later = [stop for stop in self._stops() if stop[0] > self._session.playhead]
+        self._go_to(min(later, key=lambda stop: stop[0], default=None))
 
     def previous_span(self) -> None:
-        """Go to the span before and choose it."""
-        earlier = [span for span in self._session.marks.spans if span.start < self._session.playhead]
-        if earlier:
-            self._session.select((earlier[-1].start, earlier[-1].stop))
-            self._session.move_playhead(earlier[-1].start)
+        """Go to the flag before, or to the span before and choose it."""
+        earlier = [stop for stop in self._stops() if stop[0] < self._session.playhead]
+        self._go_to(max(earlier, key=lambda stop: stop[0], default=None))
+
+    def _stops(self) -> list[tuple[int, tuple[int, int] | None]]:
+        """Return the frames to stop at, each with what to select there: spans, and flags that begin at none."""
+        spans = {span.start: (span.start, span.stop) for span in self._session.marks.spans}
+        flags = {flag.start for flag in self._session.flags or ()}
+        return [*spans.items(), *((frame, None) for frame in flags - set(spans))]
+
+    def _go_to(self, stop: tuple[int, tuple[int, int] | None] | None) -> None:
+        if stop is None:
+            return
+        frame, chosen = stop
+        within = self._session.selection
+        if chosen is not None:
+            self._session.select(chosen)
+        elif within is not None and not within[0] <= frame < within[1]:
+            self._session.select(None)  # else playing from the flag would leap back into the selection
+        self._session.move_playhead(frame)
 
     def set_in(self) -> None:
         """Let the selection begin at the playhead."""

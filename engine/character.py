@@ -16,6 +16,7 @@ from engine.formats.atomic import write_bytes
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
 BUNDLED = Path(__file__).parent.parent / "assets" / "head" / "head.npz"
+MAX_NAME = 80  # letters shown on screen
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 
 
@@ -93,6 +94,7 @@ def load(path: Path = BUNDLED) -> Character:
                 deltas,
                 stored["colours"],
                 landmarks,
+                name=str(stored["name"])[:MAX_NAME] if "name" in stored else Character.name,
                 mirror=stored["mirror"] if "mirror" in stored else np.zeros(0, np.int32),
             )
     except (OSError, KeyError, ValueError) as error:
@@ -117,6 +119,7 @@ def save(character: Character, path: Path) -> None:
         landmark_names=np.array(list(character.landmarks)),
         landmark_vertices=np.array(list(character.landmarks.values()), np.int32),
         mirror=character.mirror,
+        name=np.array(character.name),
     )
     write_bytes(path, [stored.getvalue()])
 

@@ -17,13 +17,13 @@ def filled(pose: Pose) -> Array:
     if not isinstance(pose, Mapping):
         weights = np.asarray(pose, np.float64)
         if weights.shape != (len(SHAPES),) or np.isinf(weights).any():
-            raise EditError(f"A pinned pose needs {len(SHAPES)} finite weights, this one has {weights.size}.")
+            raise EditError(f"A pose needs {len(SHAPES)} finite weights, this one has {weights.size}.")
         return weights
     weights = np.full(len(SHAPES), np.nan)
     for shape, value in pose.items():
         if shape not in SHAPE_INDEX:
             raise EditError(f"There is no shape called {shape!r}.", "Shapes have ARKit names, such as jawOpen.")
         if not np.isfinite(value):
-            raise EditError(f"The pin of {shape} is not a finite number.")
+            raise EditError(f"The weight of {shape} is not a finite number.")
         weights[SHAPE_INDEX[shape]] = value
     return weights

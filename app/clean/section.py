@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtWidgets import QPushButton, QSpinBox
+from PySide6.QtWidgets import QCheckBox, QPushButton, QSpinBox
 
 from app.inference import Inference
 from app.section import Section, quiet, slider
@@ -48,6 +48,11 @@ class CleanSection(Section):
         )
         self.keep_button.setProperty("primary", True)
         self.side_by_side(self.preview_button, self.keep_button, self.drop_button)
+        self.removed = QCheckBox("Show what is removed")
+        self.removed.setToolTip("Draw it under each curve, on a scale of its own (Shift+R)")
+        self.removed.setChecked(session.shows_removed)
+        self.removed.toggled.connect(lambda on: session.show_removed(shown=on))
+        self.column.addWidget(self.removed)
         self._facts = quiet("The selection, or the whole take where nothing is selected.")
         self.column.addWidget(self._facts)
         self._slider.valueChanged.connect(self.strength.setValue)
@@ -89,6 +94,8 @@ class CleanSection(Section):
             self.preview()
 
     def _on_change(self, change: Change) -> None:
+        if change & Change.TOOL:
+            self.removed.setChecked(self.session.shows_removed)
         if change & Change.DRAFT and self.session.tool == "clean":
             draft = self.session.draft
             if draft is None or self._estimate is None:

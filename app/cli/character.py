@@ -49,6 +49,28 @@ def import_(
     print(f"Imported {len(made.character.neutral)} vertices. Written to {out}.")
 
 
+def landmarks_(
+    path: Annotated[Path, typer.Argument(help="A character that was imported, or any head that can be.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Where the character is written.")],
+    landmarks: Landmarks = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Find the landmarks of a character anew, led by those that were placed by hand."""
+    from app.cli.tables import show
+    from engine.character import save
+    from engine.formats.characters.landmarks import with_landmarks
+    from engine.formats.characters.opening import character_of
+
+    places = {name: _vertex(name, vertex) for name, vertex in _pairs(landmarks or []).items()}
+    character, away_mm = with_landmarks(character_of(path), places)
+    save(character, out)
+    rows = [
+        {"landmark": name, "vertex": vertex, "away_mm": away_mm[name], "by_hand": name in places}
+        for name, vertex in character.landmarks.items()
+    ]
+    show(path.name, rows, as_json=as_json)
+
+
 def imported(path: Path, *, unit: str | None, up: str | None, names: list[str], landmarks: list[str]) -> Import:
     """Read a head and correct what was detected; raises `EngineError`."""
     from engine.formats.characters import read
@@ -100,7 +122,7 @@ def _vertex(name: str, text: str) -> int:
 def drive(
     markers: Annotated[Path, typer.Argument(help="Markers in a CSV, TRC or C3D file, or a take.")],
     mesh: Annotated[Path, typer.Option(help="The head to move: OBJ, glTF, or anything `character import` reads.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Where the moving mesh is written: .glb or .npz.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Where the moving mesh is written: .glb, .usd or .npz.")],
     points: Annotated[
         Path | None, typer.Option(help="Which vertex follows which marker: a CSV of marker,vertex; found otherwise.")
     ] = None,
@@ -140,5 +162,6 @@ def register(app: typer.Typer) -> None:
     """Add the commands of this module."""
     family = typer.Typer(help="Heads from other programs.", no_args_is_help=True)
     family.command("import")(import_)
+    family.command("landmarks")(landmarks_)
     app.add_typer(family, name="character")
     app.command()(drive)

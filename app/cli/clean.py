@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import json
+import signal
+import tempfile
+import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,10 +16,13 @@ import typer
 from rich.console import Console
 
 from engine.errors import EngineError
-from engine.formats import read_take, write_take
+from engine.formats import format_of, read_take, write_take
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
+    from engine.live.record import Recorder
+    from engine.live.spool import Spool
+    from engine.take import Take
 
 console = Console()
 errors = Console(stderr=True)
@@ -53,33 +61,91 @@ def live(
     subject: Annotated[str | None, typer.Option(help="Whose face; the first that arrives otherwise.")] = None,
     strength: Annotated[float, typer.Option(min=0.0, max=1.0, help="0 is raw, 1 is clean.")] = 1.0,
     record: Annotated[Path | None, typer.Option(help="Write what was sent to this take at the end.")] = None,
-    seconds: Annotated[float | None, typer.Option(help="Stop after this long; Ctrl+C otherwise.")] = None,
+    seconds: Annotated[float | None, typer.Option(min=0.0, help="Stop after this long; Ctrl+C otherwise.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object a second.")] = False,
 ) -> None:
     """Listen to a phone, clean its face as it comes, and record it."""
     from engine.live.listen import Listener
     from engine.live.record import Recorder
+    from engine.live.spool import Spool
     from engine.live.stream import Stream
 
+    if record is not None:
+        format_of(record)  # better refused now than after the performance
     recorder = Recorder()
     stream = Stream(subject=subject, strength=strength, on_arrival=recorder.add if record else None)
     with Listener(stream, bind=bind, port=port) as listener:
+        spool = None if record is None else Spool(recorder, record)
         errors.print(f"listening on {listener.address[0]}:{listener.address[1]}", style="dim", highlight=False)
-        try:
-            _tell(listener, seconds, as_json=as_json)
-        except KeyboardInterrupt:
-            errors.print("stopped", style="dim")
-    if record is not None:
+        with _ended_by_signals():
+            try:
+                _tell(listener, seconds, spool, as_json=as_json)
+            except (KeyboardInterrupt, BrokenPipeError):
+                errors.print("stopped", style="dim")
+    if record is not None and spool is not None:
+        _write_recording(recorder, spool, record)
+
+
+def _write_recording(recorder: Recorder, spool: Spool, record: Path) -> None:
+    try:
         taken = recorder.take(record.name)
+    except EngineError:  # no face came
+        spool.close(remove=True)
+        raise
+    try:
         write_take(taken, record)
-        errors.print(f"wrote {record}: {len(taken)} frames, {int(taken.lost.sum())} of them lost", highlight=False)
+    except EngineError as error:
+        elsewhere = spool.path if _saved(spool) else _written_elsewhere(taken, record)
+        raise EngineError(f"{error.sentence} The recording is in {elsewhere}.", error.advice) from error
+    spool.close(remove=True)
+    errors.print(f"wrote {record}: {len(taken)} frames, {int(taken.lost.sum())} of them lost", highlight=False)
 
 
-def _tell(listener: Listener, seconds: float | None, *, as_json: bool) -> None:
+def _saved(spool: Spool) -> bool:
+    if spool.failed:  # it has a hole
+        return False
+    try:
+        spool.save(all_rows=True)
+    except EngineError:
+        return False
+    return True
+
+
+def _written_elsewhere(taken: Take, record: Path) -> Path:
+    """Write a recording to the folder for temporary files, since its own is full."""
+    path = Path(tempfile.mkdtemp(prefix="retake-")) / record.with_suffix(".csv").name
+    write_take(taken, path)
+    return path
+
+
+@contextmanager
+def _ended_by_signals() -> Iterator[None]:
+    """Let a closed terminal or a polite kill end a recording as Ctrl+C does."""
+
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    names = ("SIGTERM", "SIGHUP") if threading.current_thread() is threading.main_thread() else ()
+    before = {
+        getattr(signal, name): signal.signal(getattr(signal, name), stop) for name in names if hasattr(signal, name)
+    }
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _tell(listener: Listener, seconds: float | None, spool: Spool | None, *, as_json: bool) -> None:
     began = time.monotonic()
     while seconds is None or time.monotonic() - began < seconds:
         left = _TOLD_EVERY_S if seconds is None else min(_TOLD_EVERY_S, seconds - (time.monotonic() - began))
         time.sleep(max(0.0, left))
+        if spool is not None and not spool.failed:
+            try:
+                spool.save()
+            except EngineError as error:
+                errors.print(f"{error} The recording goes on in memory.", highlight=False)
         status = listener.status()
         listener.frames()
         latency = None if status.latency_p95_ms != status.latency_p95_ms else round(status.latency_p95_ms, 3)

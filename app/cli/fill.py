@@ -34,6 +34,7 @@ def fill(
     visemes: Annotated[
         Path | None, typer.Option(help="What is said when: a TextGrid, or Rhubarb's TSV, XML or JSON.")
     ] = None,
+    visemes_offset: Annotated[float, typer.Option(help="Second of the take at which that file begins.")] = 0.0,
     control: Annotated[
         list[str] | None,
         typer.Option(help="An asked curve in mm: lips_vertical=3, =40:3,60:12 by frame, or a file of numbers."),
@@ -47,6 +48,7 @@ def fill(
     from engine.formats.cues import read_cues
     from engine.inpaint.fill import fill_spans, lost_spans
     from engine.inpaint.request import Request, Style, merged_pins
+    from engine.speech.visemes import begun_at
 
     if bool(frames) == lost:
         raise EditError("Say what to fill.", "Give --frames A:B, or --lost for every lost run.")
@@ -60,7 +62,7 @@ def fill(
         pins=merged_pins([_pin(text) for text in pin or []]),
         guide=read_take(guide) if guide else None,
         guide_offset=guide_offset,
-        visemes=tuple(read_cues(visemes)) if visemes else (),
+        visemes=begun_at(read_cues(visemes), visemes_offset) if visemes else (),
         controls=_controls(control or [], spans),
         style=cast(Style, style),  # checked with the rest
         lost=lost,

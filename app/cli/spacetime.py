@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli import labelled
 from engine.errors import EditError, FormatError
 
 if TYPE_CHECKING:
+    from engine.character import Character
+    from engine.spacetime.retarget import Matching
     from engine.spacetime.source import Source
+    from engine.take import Take
+
+
+class Method(StrEnum):
+    """How a performance finds its way to another head."""
+
+    SPACETIME = "spacetime"
+    MANIFOLD = "manifold"
 
 
 def pin(
@@ -54,7 +66,12 @@ def pin(
 
 def retarget(
     source: Annotated[Path, typer.Argument(help="A take, or markers in a CSV, TRC or C3D file.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Where the new take is written.")],
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="Where the new take is written.")] = None,
+    method: Annotated[
+        Method, typer.Option(help="spacetime matches the movement of markers, manifold goes by labelled frames.")
+    ] = Method.SPACETIME,
+    labels: Annotated[Path | None, typer.Option(help=labelled.LABEL_HELP)] = None,
+    suggest: Annotated[int | None, typer.Option(help=labelled.SUGGEST_HELP)] = None,
     character: Annotated[Path | None, typer.Option(help="The character to move; the bundled head otherwise.")] = None,
     landmarks: Annotated[
         Path | None, typer.Option(help="Which vertex carries which marker: a CSV of marker,vertex.")
@@ -70,29 +87,53 @@ def retarget(
     unbounded: Annotated[bool, typer.Option("--unbounded", help="Let weights leave 0..1.")] = False,
 ) -> None:
     """Carry markers or a take to another character."""
-    from engine.character import bundled, load
-    from engine.formats import markers_layout, write_take
-    from engine.spacetime.layout import named
-    from engine.spacetime.retarget import Matching
-    from engine.spacetime.retarget import retarget as carry
+    from engine.formats import write_take
 
-    target = bundled() if character is None else load(character)
-    layout = None
-    if landmarks is not None:
-        layout = named(markers_layout.read(landmarks, vertices=len(target.neutral)))
+    if method is not Method.MANIFOLD and (labels is not None or suggest is not None):
+        raise EditError("Labelled frames belong to the other method.", "Add --method manifold.")
+    performance = _source(source, neutral=neutral, unit=unit, fps=fps)
+    if suggest is not None:
+        print(*labelled.suggest(performance, suggest, labels), sep="\n")
+        return
+    if out is None:
+        raise EditError("Say where the new take is written.", "Name it with -o.")
+    if method is Method.MANIFOLD:
+        made, target = labelled.retarget(performance, character, labels)
+    else:
+        matching = _matching(alpha=alpha, beta=beta, closure=closure, unbounded=unbounded)
+        made, target = _carried(performance, character, landmarks, matching)
+    write_take(made, out)
+    for notice in made.notices:
+        print(notice)
+    print(f"Moved {target.name} by {len(made)} frames of {source.name}. Written to {out}.")
+
+
+def _matching(*, alpha: float | None, beta: float | None, closure: float | None, unbounded: bool) -> Matching:
+    from engine.spacetime.retarget import Matching
+
     usual = Matching()
-    matching = Matching(
+    return Matching(
         alpha=_strength("alpha", usual.alpha if alpha is None else alpha),
         beta=_strength("beta", usual.beta if beta is None else beta),
         closure=_strength("closure", usual.closure if closure is None else closure),
         bounds=None if unbounded else usual.bounds,
     )
-    performance = _source(source, neutral=neutral, unit=unit, fps=fps)
-    made = carry(performance, target, layout=layout, matching=matching)
-    write_take(made, out)
-    for notice in made.notices:
-        print(notice)
-    print(f"Moved {target.name} by {len(made)} frames of {source.name}. Written to {out}.")
+
+
+def _carried(
+    performance: Source, character: Path | None, landmarks: Path | None, matching: Matching
+) -> tuple[Take, Character]:
+    from engine.character import bundled
+    from engine.formats import markers_layout
+    from engine.formats.characters.opening import character_of
+    from engine.spacetime.layout import named
+    from engine.spacetime.retarget import retarget as carry
+
+    target = bundled() if character is None else character_of(character)
+    layout = None
+    if landmarks is not None:
+        layout = named(markers_layout.read(landmarks, vertices=len(target.neutral)))
+    return carry(performance, target, layout=layout, matching=matching), target
 
 
 def _source(path: Path, *, neutral: int, unit: str | None, fps: float | None) -> Source:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 
 from app.cli.tables import show
@@ -48,10 +49,14 @@ def edit(
     add: Annotated[float | None, typer.Option("--add", help="What is added, in mm.")] = None,
     scale: Annotated[float | None, typer.Option("--scale", help="What it is multiplied by.")] = None,
     exact: Annotated[bool, typer.Option("--exact", help="Hit the asked curve, believable or not.")] = False,
+    follow: Annotated[
+        bool, typer.Option("--follow/--keep", help="Whether the other controls go along, or hold it back.")
+    ] = True,
 ) -> None:
     """Change one control over a range of frames; the whole face follows."""
-    from engine.controls import control_index
+    from engine.controls import bundled_measurer, control_index
     from engine.editing import Change, edit_control, parse_frames
+    from engine.exact import shortfalls
 
     kinds: dict[Change, float | None] = {"set": set_, "add": add, "scale": scale}
     given = [(kind, amount) for kind, amount in kinds.items() if amount is not None]
@@ -59,10 +64,14 @@ def edit(
         raise EditError("Say what becomes of the control.", "Give one of --set, --add or --scale.")
     opened = read_take(take)
     column, (start, stop) = control_index(control), parse_frames(frames, opened)
-    patch = edit_control(opened, control, (start, stop), *given[0], exact_curve=exact)
+    patch = edit_control(opened, control, (start, stop), *given[0], exact_curve=exact, follow=follow)
     write_take(patch.apply(opened), out)
+    measured = bundled_measurer().measure(opened.weights[patch.start : patch.stop])
     reached = patch.reached[start - patch.start : stop - patch.start, column]
     typer.echo(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} mm")
+    asked = np.where(patch.asked != measured, patch.asked, np.nan)
+    for short in shortfalls(patch.weights, asked, bundled_measurer(), exact_curve=exact):
+        typer.echo(f"frame {patch.start + short.row}: {short}")
     typer.echo(f"frames outside {patch.start}:{patch.stop} are as they were; wrote {out}")
 
 

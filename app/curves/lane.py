@@ -8,12 +8,16 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QPainter, QPen
 
 from app.curve_table import CURVES, FIRST_WEIGHT
+from app.curves import removed
 from app.curves.peaks import peaks
+from app.curves.removed import Removed
 from app.theme import GRID, Palette
-from engine.take import Array
+from engine.take import Array, Mask
 
 GUTTER_PX = 150
 INDENT_PX = 11
+REMOVED, CROWDED_PX = "removed ", 48
+LEAST_WEIGHT, LEAST_MM = 0.01, 0.1  # the smallest scale of what is removed
 
 
 class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
@@ -25,6 +29,8 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         self.expanded = False
         self.colour, self.quiet, self.text_colour = QColor("white"), QColor("grey"), QColor("white")
         self.active, self.value, self.range = False, 0.0, (0.0, 1.0)
+        self.spare = 0.0  # the part of the lane's height below its range, for what is removed
+        self.removed, self.removed_colour = "", QColor("white")
         self.setFixedWidth(GUTTER_PX)
 
     def paint(self, painter: QPainter, *_: object) -> None:
@@ -51,6 +57,13 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         painter.setPen(self.quiet)
         low, high = self.range
         right = Qt.AlignmentFlag.AlignRight
+        if self.removed:
+            painter.setPen(self.removed_colour)
+            crowded = area.height() < CROWDED_PX and not self._curve.is_weight  # the value stands beside it
+            text = self.removed.removeprefix(REMOVED) if crowded else self.removed
+            painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, text)
+            painter.setPen(self.quiet)
+            area.setHeight(area.height() * (1 - self.spare))
         if area.height() > 26 and not self._curve.is_weight:
             painter.drawText(area, right | Qt.AlignmentFlag.AlignTop, f"{high:.0f}")
             painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, f"{low:.0f}")
@@ -73,7 +86,8 @@ class Lane:
         self.dot = pg.ScatterPlotItem(size=9)
         for item in (self.original, self.asked, self.reached, self.dot):
             self.view.addItem(item, ignoreBounds=True)
-        self.range = (0.0, 1.0)
+        self.removed = Removed(self.view, LEAST_WEIGHT if self.curve.is_weight else LEAST_MM)
+        self.range = self._fitted = (0.0, 1.0)
 
     def paint_with(self, colours: Palette) -> None:
         """Take on a theme's colours."""
@@ -83,10 +97,12 @@ class Lane:
         self.asked.setPen(QPen(QColor(colours.text), 1, Qt.PenStyle.DashLine))
         self.asked.opts["pen"].setCosmetic(True)
         self.reached.setPen(pg.mkPen(colour, width=1))
+        self.removed.paint_with(colours)
         self.dot.setBrush(pg.mkBrush(colour))
         self.dot.setPen(pg.mkPen(colours.text, width=1))
         self.gutter.colour, self.gutter.quiet = colour, QColor(colours.quiet)
         self.gutter.text_colour = QColor(colours.text)
+        self.gutter.removed_colour = QColor(colours.warning)
 
     def fit(self, *curves: Array) -> None:
         """Choose the range of values so that the curves, (frames,) each, fit with a margin; weights show 0..1."""
@@ -94,13 +110,23 @@ class Lane:
             low = min(0.0, *(float(curve.min()) for curve in curves))
             high = max(1.0, *(float(curve.max()) for curve in curves))
             self.gutter.range = (low, high)
-            self.set_range(low - 0.06, high + 0.06)
+            self._set_fitted(low - 0.06, high + 0.06)
             return
         low = min(float(np.nanmin(curve)) for curve in curves)
         high = max(float(np.nanmax(curve)) for curve in curves)
         spare = max(0.08 * (high - low), (4.0 - (high - low)) / 2, 0.2)
         self.gutter.range = (low, high)
-        self.set_range(low - spare, high + spare)
+        self._set_fitted(low - spare, high + spare)
+
+    def _make_room(self, spare: float) -> None:
+        if spare != self.gutter.spare:
+            self.gutter.spare = spare
+            self._set_fitted(*self._fitted)
+
+    def _set_fitted(self, low: float, high: float) -> None:
+        self._fitted = (low, high)
+        spare = self.gutter.spare
+        self.set_range(low - spare / (1 - spare) * (high - low), high)
 
     def set_range(self, low: float, high: float) -> None:
         """Show values between two bounds, in mm."""
@@ -120,6 +146,21 @@ class Lane:
         if asked is not None:
             self.asked.setData(*peaks(asked, start, self._columns))
         self.reached.setData(*peaks(reached, start, self._columns))
+
+    def draw_removed(self, taken_off: Array, start: int, *, kept: Mask, visible: tuple[int, int]) -> None:
+        """Draw what cleaning takes off, (n,) from `start`, at the foot of the lane; `kept` are frames with a face."""
+        self._make_room(removed.SHARE)
+        full = self.removed.show(taken_off, start, kept=kept, visible=visible, columns=self._columns)
+        unit = "" if self.curve.is_weight else f" {self.curve.unit}"
+        self.gutter.removed = f"{REMOVED}±{full:g}{unit}"
+        self.gutter.update()
+
+    def hide_removed(self) -> None:
+        """Give the foot of the lane back to its curve."""
+        self._make_room(0.0)
+        self.removed.hide()
+        self.gutter.removed = ""
+        self.gutter.update()
 
     @property
     def _columns(self) -> int:

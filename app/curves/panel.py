@@ -89,6 +89,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             (kinds.TAKE | kinds.LANES | kinds.LANE, self._arrange),
             (kinds.TAKE | kinds.LANES | kinds.VIEW, self._show_frames),
             (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT, self._draw_edits),
+            (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT | kinds.TOOL, self._draw_removed),
             (kinds.TAKE | kinds.LANES | kinds.PLAYHEAD | kinds.CURVES | kinds.DRAFT, self._show_playhead),
             (kinds.DRAFT, self.tool.refresh),
             (kinds.TAKE | kinds.TOOL, self._take_up_tool),
@@ -157,6 +158,19 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
                 if asked is not None:
                     asked = _overlaid(asked, start, draft.asked[:, lane.curve.column], draft.start)
             lane.draw_edit(asked, reached, start)
+
+    def _draw_removed(self) -> None:
+        session, draft = self.session, self.session.draft
+        wanted = session.tool == "clean" and session.shows_removed
+        visible = on_screen(len(session.take), session.view)
+        for lane in self.lanes:
+            drafted = session.draft_curve(lane.key) if wanted else None
+            if draft is None or drafted is None:
+                lane.hide_removed()
+                continue
+            rows = slice(draft.start, draft.stop)
+            kept = ~session.take.lost[rows]
+            lane.draw_removed(session.curve(lane.key)[rows] - drafted, draft.start, kept=kept, visible=visible)
 
     def _show_playhead(self) -> None:
         frame = self.session.playhead

@@ -10,7 +10,7 @@ from app.session import Change, Session
 
 
 class BrushSection(Section):
-    """Radius and strength, by slider and by typing, and whether the curve is hit exactly."""
+    """Radius and strength, by slider and by typing, whether the curve is hit exactly and the rest follows."""
 
     tools = frozenset({"drag", "draw", "scale"})
 
@@ -28,11 +28,17 @@ class BrushSection(Section):
         self.exact = QCheckBox("Hit the curve exactly")
         self.exact.setToolTip("Plausible, the default, keeps the face believable; exact goes where you drag it.")
         self.column.addWidget(self.exact)
+        self.follow = QCheckBox("Let the rest follow")
+        self.follow.setToolTip(
+            "Curves that you never touched go along with the one you pull; without it, they hold it back where they were."
+        )
+        self.column.addWidget(self.follow)
         for widget in (self.radius, self._radius_slider):
             widget.valueChanged.connect(self._set_radius)
         for widget in (self.strength, self._strength_slider):
             widget.valueChanged.connect(self._set_strength)
         self.exact.toggled.connect(self._set_exact)
+        self.follow.toggled.connect(self._set_follow)
         session.changed.connect(self._on_change)
         self._show()
 
@@ -44,6 +50,9 @@ class BrushSection(Section):
 
     def _set_exact(self, on: bool) -> None:
         self.session.set_brush(exact=on)
+
+    def _set_follow(self, on: bool) -> None:
+        self.session.set_brush(follow=on)
 
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.TOOL):
@@ -59,5 +68,6 @@ class BrushSection(Section):
         ):
             with QSignalBlocker(widget):
                 widget.setValue(value)
-        with QSignalBlocker(self.exact):
-            self.exact.setChecked(self.session.exact)
+        for box, on in ((self.exact, self.session.exact), (self.follow, self.session.follow)):
+            with QSignalBlocker(box):
+                box.setChecked(on)

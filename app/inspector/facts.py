@@ -3,46 +3,90 @@
 from __future__ import annotations
 
 import numpy as np
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QLabel, QPushButton
 
-from app.curve_table import CURVES, FIRST_WEIGHT
+from app.commands import EditCommand
+from app.curve_table import CURVES
 from app.section import Section, quiet
 from app.session import Change, Session
+from engine.controls import bundled_measurer
+from engine.exact import shortfalls
+from engine.take import Array
 
 
 class FactsSection(Section):
-    """Asked and reached while an edit is under way; how much differs from the original after it."""
+    """What is asked and reached, and why not more; how much differs from the original."""
+
+    again = Signal()
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "This edit")
-        self._facts = quiet("")
-        self.column.addWidget(self._facts)
+        self.told, self.facts = QLabel(wordWrap=True), quiet("")
+        self.column.addWidget(self.told)
+        self.column.addWidget(self.facts)
+        self.again_button = QPushButton("Apply to the last edit")
+        self.again_button.setToolTip(
+            "Make the last edit again, with the settings of the brush as they are now.  (Ctrl+R)"
+        )
+        self.again_button.clicked.connect(self.again)
+        self.column.addWidget(self.again_button)
         session.changed.connect(self._on_change)
-        self._facts.setText(self._describe())
+        session.undo.indexChanged.connect(self._show)
+        self._show()
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.CURVES | Change.DRAFT):
-            self._facts.setText(self._describe())
+        if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.TOOL):
+            self._show()
 
-    def _describe(self) -> str:
-        session = self.session
-        frames = len(session.take)
-        if session.draft is not None:
-            return "\n".join(
-                [*self._asked(), f"moves {session.draft.stop - session.draft.start:,} of {frames:,} frames"]
-            )
+    def _show(self, *_: int) -> None:
+        session, step = self.session, self._step()
+        modes = {"exact": session.exact, "follow": session.follow}
+        made = {name: step.edit.inputs.get(name) for name in modes} if step is not None else modes
+        self.again_button.setVisible(session.draft is None and made != modes)
+        told = self._told_of(step)
+        self.told.setText("\n".join(told))
+        self.told.setVisible(bool(told))
+        self.facts.setText(self._counts())
+
+    def _step(self) -> EditCommand | None:
+        """Return the last edit, where it asked for a curve."""
+        step = self.session.undo.command(self.session.undo.index() - 1)
+        return step if isinstance(step, EditCommand) and step.asked is not None else None
+
+    def _told_of(self, step: EditCommand | None) -> list[str]:
+        session, draft = self.session, self.session.draft
+        if draft is not None:
+            rows = slice(draft.start, draft.stop)
+            if draft.asked is draft.reached:
+                return []  # nothing was asked of a control
+            return _told(draft.weights, draft.asked, session.controls[rows], session.asked[rows], session.exact)
+        if step is None or step.asked is None:
+            return []
+        return _told(step.edit.weights, step.asked[1], *step.before, bool(step.edit.inputs.get("exact")))
+
+    def _counts(self) -> str:
+        session, draft, frames = self.session, self.session.draft, len(self.session.take)
+        if draft is not None:
+            return f"moves {draft.stop - draft.start:,} of {frames:,} frames"
         if not session.undo.index():
             return "Nothing changed yet. Drag a curve up or down."
         moved = int((session.take.weights != session.original.weights).any(axis=1).sum())
         return f"{moved:,} of {frames:,} frames differ from the original\n{frames - moved:,} frames bit-identical"
 
-    def _asked(self) -> list[str]:
-        draft = self.session.draft
-        assert draft is not None
-        controls = self.session.controls[draft.start : draft.stop]
-        lines = []
-        for lane in np.flatnonzero((draft.asked != controls).any(axis=0)[:FIRST_WEIGHT]):
-            row = int(np.argmax(np.abs(draft.asked[:, lane] - controls[:, lane])))
-            asked, reached = draft.asked[row, lane], draft.reached[row, lane]
-            if draft.asked is not draft.reached:
-                lines.append(f"{CURVES[lane].title}: asked {asked:.1f}, reached {reached:.1f} mm")
-        return lines
+
+def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, exact: bool) -> list[str]:
+    """Return a line for each control that an edit asked for: (n, 52) weights, (n, 8) mm asked and there before."""
+    changed = asked != controls
+    reached, everything = bundled_measurer().measure(weights), np.where(changed, asked, asked_before)
+    short = {
+        found.control: found
+        for found in shortfalls(weights, everything, bundled_measurer(), exact_curve=exact)
+        if changed[:, found.control].any()
+    }
+    lines = []
+    for lane in np.flatnonzero(changed.any(axis=0)).tolist():
+        row = int(np.argmax(np.abs(asked[:, lane] - controls[:, lane])))
+        met = f"{CURVES[lane].title} {reached[row, lane]:.1f} mm of {asked[row, lane]:.1f} asked"
+        lines.append(str(short[lane]) if lane in short else met)
+    return lines

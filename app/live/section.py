@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from collections import deque
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,15 +12,18 @@ from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox
 
 from app.section import Section, quiet, slider
-from app.session import Session
+from app.session import Change, Session
 from engine.errors import EngineError
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
     from engine.live.record import Recorder
+    from engine.live.spool import Spool
+    from engine.take import Take
 
-POLL_MS = 16
-STATUS_EVERY = 20  # polls
+STATUS_MS = 400
+SWITCH_S = 1e-4  # for which a thread may keep another waiting; Python's own 5 ms would be felt in each packet
+SHOWN = 300  # pictures whose delay the meter tells
 # Heard from other machines only when asked for: a face is personal, and a socket is a door.
 PLACES = {"this computer only": "127.0.0.1", "my network (a phone)": "0.0.0.0"}
 
@@ -28,20 +34,28 @@ class LiveSection(Section):
     Parameters
     ----------
     session : the take beside which one listens; it is not touched until a recording is opened
+    folder : where a recording grows while it is made, so that a crash does not lose it
     """
 
     tools = frozenset({"live"})
-    face = Signal(object)  # (52,) weights to show, or None to go back to the take
+    face = Signal(object, float)  # (52,) weights to show and when they arrived, or None to go back to the take
     recorded = Signal(object)  # a Take
     failed = Signal(str, str)
+    _cleaned = Signal()  # from the listener's thread
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, folder: Path) -> None:
         super().__init__(session, "Live")
+        self._folder = folder
+        self._spool: Spool | None = None
+        self._waiting: tuple[Take, Spool | None] | None = None  # a recording that is not open yet
+        session.changed.connect(self._on_change)
         self._listener: Listener | None = None
         self._recorder: Recorder | None = None
-        self._polls = 0
-        self._timer = QTimer(self, interval=POLL_MS)
-        self._timer.timeout.connect(self._poll)
+        self._shown_ms: deque[float] = deque(maxlen=SHOWN)
+        self._timer = QTimer(self, interval=STATUS_MS)
+        self._timer.timeout.connect(self._show_status)
+        self._cleaned.connect(self._show_face)
+        self._switch_s = sys.getswitchinterval()
         self.place, self.port = QComboBox(), QSpinBox()
         self.place.addItems(list(PLACES))
         self.place.setAccessibleName("Listen to")
@@ -82,12 +96,19 @@ class LiveSection(Section):
 
         try:
             stream = Stream(strength=self.strength.value() / 100)
-            self._listener = Listener(stream, bind=PLACES[self.place.currentText()], port=self.port.value())
+            self._listener = Listener(
+                stream,
+                bind=PLACES[self.place.currentText()],
+                port=self.port.value(),
+                on_frames=self._cleaned.emit,
+            )
         except EngineError as error:
             self.failed.emit(error.sentence, error.advice)
             return
         self.subjects.clear()
+        self._shown_ms.clear()
         self._timer.start()
+        sys.setswitchinterval(SWITCH_S)
         self._show_buttons()
 
     def stop(self) -> None:
@@ -98,8 +119,17 @@ class LiveSection(Section):
         if self._listener is not None:
             self._listener.close()
             self._listener = None
-            self.face.emit(None)
+            sys.setswitchinterval(self._switch_s)
+            self.face.emit(None, 0.0)
         self._show_buttons()
+
+    def shut_down(self) -> None:
+        """Stop for good; a recording under way stays on disk and is offered at the next start."""
+        if self._recorder is not None:
+            self._save(all_rows=True)
+            self._close_spool(remove=False)
+            self._recorder = None
+        self.stop()
 
     def toggle_recording(self) -> None:
         """Begin to record, or end and open what was recorded."""
@@ -109,28 +139,69 @@ class LiveSection(Section):
             from engine.live.record import Recorder
 
             self._recorder = Recorder()
+            self._begin_spool(self._recorder)
             self._listener.stream.on_arrival = self._recorder.add
         else:
             recorder, self._recorder = self._recorder, None
             self._listener.stream.on_arrival = None
-            try:
-                self.recorded.emit(recorder.take("live"))
-            except EngineError as error:
-                self.failed.emit(error.sentence, error.advice)
+            self._end(recorder)
         self._show_buttons()
 
-    def _poll(self) -> None:
-        if self._listener is None:
+    def _begin_spool(self, recorder: Recorder) -> None:
+        from engine.live.spool import Spool
+
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            self._spool = Spool(recorder, self._folder / "live.csv")
+        except (EngineError, OSError) as error:  # it goes on in memory
+            self.failed.emit(f"A crash would lose this recording: {error}", "")
+
+    def _end(self, recorder: Recorder) -> None:
+        try:
+            take = recorder.take("live")
+        except EngineError as error:
+            self.failed.emit(error.sentence, error.advice)
+            self._close_spool(remove=True)
             return
-        frames = self._listener.frames()
+        self._save(all_rows=True)
+        self._waiting = (take, self._spool)
+        self._close_spool(remove=False)
+        self.recorded.emit(take)
+        if self._waiting is not None:
+            self.failed.emit("The recording waits until your edits are safe.", "Else it is offered at the next start.")
+
+    def _on_change(self, change: Change) -> None:
+        if self._waiting is not None and change & Change.TAKE and self.session.take is self._waiting[0]:
+            spool, self._waiting = self._waiting[1], None
+            if spool is not None:
+                spool.close(remove=True)
+
+    def _close_spool(self, *, remove: bool) -> None:
+        if self._spool is not None:
+            self._spool.close(remove=remove)
+            self._spool = None
+
+    def _save(self, *, all_rows: bool = False) -> None:
+        if self._spool is None or self._spool.failed:
+            return
+        try:
+            self._spool.save(all_rows=all_rows)
+        except EngineError as error:
+            self.failed.emit(error.sentence, error.advice)
+
+    def on_screen(self, spent_ms: float) -> None:
+        """Take note of how long a packet took until its picture was shown."""
+        self._shown_ms.append(spent_ms)
+
+    def _show_face(self) -> None:
+        frames = self._listener.frames() if self._listener is not None else []
         if frames:
-            self.face.emit(np.asarray(frames[-1].clean, np.float64))
-        self._polls += 1
-        if self._polls % STATUS_EVERY == 0:
-            self._show_status()
+            self.face.emit(np.asarray(frames[-1].clean, np.float64), frames[-1].arrived_s)
 
     def _show_status(self) -> None:
-        assert self._listener is not None
+        if self._listener is None:
+            return
+        self._save()
         status = self._listener.status()
         if self.subjects.count() != len(status.subjects):
             self.subjects.clear()
@@ -138,6 +209,8 @@ class LiveSection(Section):
         lines = [f"{status.frames:,} frames"]
         if np.isfinite(status.latency_p95_ms):
             lines.append(f"clean {status.latency_p95_ms:.1f} ms after arrival")
+        if self._shown_ms:
+            lines.append(f"on screen {np.percentile(self._shown_ms, 95):.0f} ms after arrival")
         lines += [f"{count:,} {reason}" for reason, count in status.drops.items() if count]
         if self._recorder is not None:
             lines.append(f"recording: {len(self._recorder):,} frames")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import getpass
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 
@@ -28,6 +28,7 @@ class NotesSection(Section):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "Notes")
+        self.author: Callable[[], str] = str  # who writes
         self.entry = QLineEdit()
         self.entry.setPlaceholderText("Note on this frame, then Enter")
         self.entry.setMaxLength(LONGEST)
@@ -47,7 +48,7 @@ class NotesSection(Section):
             return
         session = self.session
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        note = Note(session.playhead, _author(), now, text)
+        note = Note(session.playhead, self.author(), now, text)
         notes = tuple(sorted((*session.marks.notes, note), key=lambda each: each.frame))
         session.undo.push(MarkCommand(session, replace(session.marks, notes=notes), "add a note"))
         self.entry.clear()
@@ -69,10 +70,3 @@ class NotesSection(Section):
             button.setToolTip(f"{note.text}\n{note.author}, {note.time}")
             button.clicked.connect(lambda _=False, frame=note.frame: self.session.move_playhead(frame))
             self._list.addWidget(button)
-
-
-def _author() -> str:
-    try:
-        return getpass.getuser()
-    except (OSError, KeyError, ImportError):
-        return ""

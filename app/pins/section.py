@@ -6,21 +6,19 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QSignalBlocker, Qt
-from PySide6.QtWidgets import QGridLayout, QLabel, QLineEdit, QPushButton, QSlider, QSpinBox, QWidget
+from PySide6.QtCore import QSignalBlocker
+from PySide6.QtWidgets import QLineEdit, QPushButton, QSlider, QSpinBox
 
 from app.inference import Inference
-from app.section import Section, quiet, slider
+from app.section import Section, quiet
 from app.session import Change, Session
+from app.weight_sliders import WeightSliders
 from engine.project import Pin
-from engine.take import SHAPE_INDEX, SHAPES
 
 if TYPE_CHECKING:
     from engine.editing import Dragger, Patch
     from engine.spacetime.pin import PinSolver
 
-STEPS = 200  # of a weight's slider
-SHOWN = 12
 SPREAD_S = 0.5
 
 
@@ -49,19 +47,10 @@ class PinsSection(Section):
             box.valueChanged.connect(self._spread)
         self.row("Ease in", self.before)
         self.row("Ease out", self.after)
-        self.search = QLineEdit()
-        self.search.setPlaceholderText("Search shapes…")
-        self.search.setClearButtonEnabled(True)
-        self.search.textChanged.connect(self._show_sliders)
-        self.column.addWidget(self.search)
-        self._grid_box = QWidget()
-        self._grid = QGridLayout(self._grid_box)
-        self._grid.setContentsMargins(0, 0, 0, 0)
-        self._grid.setVerticalSpacing(2)
-        self._grid.setColumnStretch(0, 1)
-        self.column.addWidget(self._grid_box)
-        self.sliders: dict[str, QSlider] = {}
-        self._values: dict[str, QLabel] = {}
+        self._weights = WeightSliders()
+        self._weights.moved.connect(self._move)
+        self._weights.searched.connect(self._show_sliders)
+        self.column.addWidget(self._weights)
         self.keep_button, self.drop_button = QPushButton("Pin"), QPushButton("Drop")
         self.keep_button.setProperty("primary", True)
         self.keep_button.setToolTip("Keep the pose and the pin")
@@ -73,6 +62,16 @@ class PinsSection(Section):
         session.changed.connect(self._on_change)
         self._reset_range()
         self._show_sliders()
+
+    @property
+    def search(self) -> QLineEdit:
+        """What is typed narrows the list of sliders."""
+        return self._weights.search
+
+    @property
+    def sliders(self) -> dict[str, QSlider]:
+        """The sliders on screen, by shape name."""
+        return self._weights.sliders
 
     @property
     def range(self) -> tuple[int, int]:
@@ -117,37 +116,13 @@ class PinsSection(Section):
 
     def _show_sliders(self) -> None:
         """Show the shapes that match the search, or else those most active around the playhead."""
-        while (item := self._grid.takeAt(0)) is not None:
-            if (old := item.widget()) is not None:
-                old.hide()
-                old.deleteLater()
-        self.sliders, self._values = {}, {}
         self._frame = self.session.playhead
-        for row, name in enumerate(self._listed()):
-            value = self._pose.get(name, float(self.session.take.weights[self._frame, SHAPE_INDEX[name]]))
-            label, number, bar = quiet(name), QLabel(f"{value:.2f}"), slider(0, STEPS)
-            label.setWordWrap(False)
-            number.setAlignment(Qt.AlignmentFlag.AlignRight)
-            bar.setValue(round(value * STEPS))
-            bar.setAccessibleName(name)
-            bar.valueChanged.connect(lambda at, name=name: self._move(name, at / STEPS))
-            self._grid.addWidget(label, 2 * row, 0)
-            self._grid.addWidget(number, 2 * row, 1)
-            self._grid.addWidget(bar, 2 * row + 1, 0, 1, 2)
-            self.sliders[name], self._values[name] = bar, number
-
-    def _listed(self) -> list[str]:
-        wanted = self.search.text().strip().lower()
-        if wanted:
-            return [name for name in SHAPES if wanted in name.lower()][:SHOWN]
-        start, stop = self.range
-        active = np.ptp(self.session.take.weights[start:stop], axis=0) + self.session.take.weights[self._frame]
-        moved = list(self._pose)
-        return moved + [SHAPES[i] for i in np.argsort(-active) if SHAPES[i] not in moved][: SHOWN - len(moved)]
+        face, (start, stop) = self.session.take.weights[self._frame], self.range
+        activity = np.ptp(self.session.take.weights[start:stop], axis=0) + face
+        self._weights.show_face(face, activity, self._pose)
 
     def _move(self, name: str, value: float) -> None:
         self._pose[name] = value
-        self._values[name].setText(f"{value:.2f}")
         self._spread()
 
     def _spread(self, *_: int) -> None:

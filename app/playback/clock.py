@@ -38,6 +38,7 @@ class Sink(Protocol):
     """A loudspeaker: pulls blocks from a thread of its own, at its own pace."""
 
     rate: int  # Hz, which may differ from the recording's
+    name: str  # as the system calls it
 
     def start(self, pull: Pull) -> bool:
         """Pull until `pull` returns None; nothing where it pulls already; False where the device has gone."""
@@ -93,10 +94,12 @@ class AudioClock:
     ) -> None:
         self._sink, self._time_s = sink, time_s
         self._source = Source(audio, offset_s=offset_s, out_rate=sink.rate)
+        self._offset_s = offset_s
         self._wall = WallClock(time_s)
         self._at_s = self._speed = self._idle_s = self._since_s = 0.0
         self._loop: Loop | None = None
         self._deaf = False  # nothing is heard: the wall tells the time until the next `play`
+        self.scrubs = True  # whether moments are heard while standing still
 
     @property
     def muted(self) -> bool:
@@ -115,6 +118,16 @@ class AudioClock:
         self._since_s = self._time_s()
         if self._deaf:
             self._wall.play(at_s, speed, loop)
+
+    def shift(self, offset_s: float) -> None:
+        """Let the sound begin at another time in the take, without letting go of the device."""
+        if offset_s == self._offset_s:
+            return
+        at_s = self.now_s()
+        self._offset_s = offset_s
+        self._source.shift(offset_s)
+        if self._speed:
+            self.play(at_s, self._speed, self._loop)
 
     def stop(self) -> None:
         """Stand still, with the sound faded out."""
@@ -138,8 +151,9 @@ class AudioClock:
     def scrub(self, at_s: float) -> None:
         """Let a moment be heard."""
         self._at_s = at_s
-        self._source.scrub(at_s)
-        self._sink.start(self._pull)
+        if self.scrubs:
+            self._source.scrub(at_s)
+            self._sink.start(self._pull)
 
     def close(self) -> None:
         """Let go of the device."""

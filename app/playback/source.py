@@ -48,6 +48,12 @@ class Source:
         self._next_grain: float | None = None
         self._blocks: deque[tuple[float, float, float]] = deque(maxlen=BLOCKS_REMEMBERED)  # heard from, until; place
 
+    def shift(self, offset_s: float) -> None:
+        """Let the recording begin at another time in the take; what is heard goes on until the next `play`."""
+        with self._lock:
+            self._offset_s = offset_s
+            self._blocks.clear()
+
     @property
     def idle(self) -> bool:
         """Whether there is nothing to play."""

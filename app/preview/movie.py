@@ -26,9 +26,9 @@ class _Studio:
 
 def use(character: Character) -> None:
     """Draw on this head from now on."""
-    if _Studio.renderer is not None:
-        _Studio.renderer.close()
-    _Studio.renderer = Renderer(character)
+    if _Studio.renderer is None:
+        _Studio.renderer = Renderer(character)
+    _Studio.renderer.character = character
 
 
 def _renderer() -> Renderer:

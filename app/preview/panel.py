@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QSizePolicy,
+    QSplitter,
     QToolButton,
     QVBoxLayout,
     QWidget,
@@ -22,16 +23,21 @@ from PySide6.QtWidgets import (
 
 from app.inference import Inference
 from app.preview.camera import PRESETS, Camera
+from app.preview.overlay import Overlay
+from app.preview.picking import vertex_under
 from app.preview.renderer import GROUND, HEAT, HEAT_FULL_MM, Picture, Shot
 from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
+from app.sides import Side
 from app.theme import GRID
-from engine.character import Character
+from engine.character import Character, bundled
 from engine.take import Array
 
 VIEWS = ("Before", "After", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
+WIDE = 0.6  # of what preview and curves share, for two heads
+CLICK_PX = 4  # a press that moves no further is a click
 STRIP_PX = (70, 88)  # one face of a strip
 STRIP_CAMERA = Camera(zoom=1.5, pan=(0.0, -0.07))
 
@@ -40,6 +46,7 @@ class Face(QWidget):
     """The picture; drag orbits, right-drag or Shift-drag pans, wheel zooms, double-click frames the head."""
 
     camera_moved = Signal(object)
+    clicked = Signal(QPointF)
 
     def __init__(self) -> None:
         super().__init__()
@@ -47,7 +54,9 @@ class Face(QWidget):
         self.image = QImage()
         self.view = "After"
         self.message = "Preparing the preview…"
+        self.overlay: Overlay | None = None
         self._grip: QPointF | None = None
+        self._pressed_at = QPointF()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setMinimumSize(200, 200)
         self.setCursor(Qt.CursorShape.OpenHandCursor)
@@ -57,8 +66,9 @@ class Face(QWidget):
         """Prefer a portrait."""
         return QSize(460, 620)
 
-    def show_picture(self, picture: Picture) -> None:
-        """Show a picture, (height, width, 3) uint8."""
+    def show_picture(self, picture: Picture, overlay: Overlay | None = None) -> None:
+        """Show a picture, (height, width, 3) uint8, and what is drawn over it."""
+        self.overlay = overlay
         height, width = picture.shape[:2]
         self.image = QImage(picture.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
         self.message = ""
@@ -75,6 +85,8 @@ class Face(QWidget):
         if self.message:
             flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
             painter.drawText(self.rect().adjusted(24, 24, -24, -24), flags, self.message)
+        elif self.overlay is not None:
+            self.overlay.draw(painter)
         elif self.view == "Split":
             middle = self.width() // 2
             painter.drawLine(middle, 0, middle, self.height())
@@ -95,12 +107,12 @@ class Face(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Take hold of the camera."""
-        self._grip = event.position()
+        self._grip = self._pressed_at = event.position()
         self.setCursor(Qt.CursorShape.ClosedHandCursor)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Orbit or pan."""
-        if self._grip is None:
+        if self._grip is None or (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX:
             return
         moved = event.position() - self._grip
         self._grip = event.position()
@@ -111,8 +123,10 @@ class Face(QWidget):
             self._move(self.camera.orbited(around_deg=-0.4 * moved.x(), above_deg=0.4 * moved.y()))
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """Let go."""
+        """Let go; a press that went nowhere is a click."""
         self._grip = None
+        if (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX:
+            self.clicked.emit(event.position())
         self.setCursor(Qt.CursorShape.OpenHandCursor)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -139,7 +153,10 @@ class PreviewPanel(QFrame):
 
     strip_drawn = Signal(object)  # faces side by side, (height, width, 3)
     timed = Signal(float)  # ms from the mouse event to its picture on screen
+    live_timed = Signal(float)  # ms from a live packet's arrival to its picture on screen
     failed = Signal(str, str)
+    picked = Signal(int, int)  # which side was clicked, and the vertex there
+    dot_clicked = Signal(str)  # name of a marker
 
     def __init__(self, session: Session, inference: Inference) -> None:
         super().__init__()
@@ -147,6 +164,8 @@ class PreviewPanel(QFrame):
         self._session, self._inference = session, inference
         self._character: Character | None = None
         self._live: Array | None = None
+        self._sides: tuple[Side, ...] = ()
+        self._narrow: list[int] = []  # what the panels' widths were before there were two heads
         self.face = Face()
         self._frame_label = QLabel()
         self._frame_label.setProperty("quiet", True)
@@ -161,6 +180,7 @@ class PreviewPanel(QFrame):
         self.drawing.failed.connect(self._refused)
         self._lay_out()
         self.face.camera_moved.connect(lambda _: self.refresh())
+        self.face.clicked.connect(self._pick)
         session.changed.connect(self._on_change)
 
     def _lay_out(self) -> None:
@@ -230,20 +250,42 @@ class PreviewPanel(QFrame):
         size = (int(self.face.width() * ratio), int(self.face.height() * ratio))
         self._asked_at = time.perf_counter()
         shot = replace(self._shot(), size=size, smooth_edges=not self._coarse)
-        self.drawing.submit(Wanted(shot, self._character, since))
+        live = self._live is not None
+        self.drawing.submit(Wanted(shot, self._character, since, live=live, sides=self._sides))
         if self._coarse:
             self._still.start()
 
-    def show_live(self, weights: Array | None) -> None:
+    def show_live(self, weights: Array | None, arrived_s: float = 0.0) -> None:
         """Show a live face, (52,) weights, in place of the take's; None goes back to the take."""
         self._live = weights
+        self._show_frame()
+        self.refresh(since=arrived_s)
+
+    def show_sides(self, sides: tuple[Side, ...]) -> None:
+        """Show these side by side in place of the take; none goes back to it."""
+        self._sides = sides
+        for button in self._views.buttons():
+            button.setEnabled(not sides)
+        self._widen(wide=len(sides) > 1)
         self.refresh()
+
+    def _widen(self, *, wide: bool) -> None:
+        """Make room for two heads, and give it back after."""
+        split = self.parentWidget()
+        if not isinstance(split, QSplitter) or wide == bool(self._narrow):
+            return
+        sizes, self._narrow = (self._narrow, []) if not wide else (split.sizes(), split.sizes())
+        whole = sum(sizes)
+        split.setSizes([round(WIDE * whole), round((1 - WIDE) * whole)] if wide else sizes)
 
     def draw_strip(self, faces: list[Array]) -> None:
         """Draw faces, (52,) weights each, small and side by side; `strip_drawn` brings the picture."""
         if not self._off and faces:
             size = (STRIP_PX[0] * len(faces), STRIP_PX[1])
             self.drawing.submit(Wanted(Shot(tuple(faces), STRIP_CAMERA, size), self._character, strip=True), "strip")
+
+    def _show_frame(self) -> None:
+        self._frame_label.setText("live" if self._live is not None else f"frame {self._session.playhead:,}")
 
     def _shot(self) -> Shot:
         session, view = self._session, self.face.view
@@ -252,6 +294,9 @@ class PreviewPanel(QFrame):
         camera = self.face.camera
         if self._live is not None:
             return Shot((self._live,), camera)
+        if self._sides:
+            heads = tuple(side.head or bundled() for side in self._sides)
+            return Shot(tuple(side.weights for side in self._sides), camera, heads=heads)
         if view == "Before":
             return Shot((before,), camera)
         if view == "Split":
@@ -272,9 +317,26 @@ class PreviewPanel(QFrame):
             self._spent_ms = spent
         elif wanted.shot.size[0] > 0.75 * self.face.width() * self.devicePixelRatioF():
             self._quick_ms = spent
-        self.face.show_picture(picture)
+        size = self.face.width(), self.face.height()
+        self.face.show_picture(picture, Overlay.of(wanted.sides, wanted.shot.camera, *size) if wanted.sides else None)
         if wanted.since:
-            self.timed.emit((time.perf_counter() - wanted.since) * 1e3)
+            timed = self.live_timed if wanted.live else self.timed
+            timed.emit((time.perf_counter() - wanted.since) * 1e3)
+
+    def _pick(self, at: QPointF) -> None:
+        """Name the dot under the pointer, or else the vertex."""
+        overlay = self.face.overlay
+        if overlay is None:
+            return
+        index, dot = overlay.side_at(at.x()), overlay.dot_at(at.x(), at.y())
+        side = overlay.sides[index]
+        if side.pickable and side.weights is not None:
+            head = side.head or bundled()
+            vertex = vertex_under(head, side.weights, overlay.views[index], at.x(), at.y())
+            if vertex is not None:
+                self.picked.emit(index, vertex)
+        elif dot is not None:
+            self.dot_clicked.emit(side.dots[dot[1]].name)
 
     def _refused(self, wanted: Wanted, sentence: str, advice: str) -> None:
         self._off = True
@@ -284,9 +346,11 @@ class PreviewPanel(QFrame):
         self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD):
+        if change & Change.CHARACTER:
+            self._character = self._session.character
+        if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.CHARACTER):
             session = self._session
-            self._frame_label.setText(f"frame {session.playhead:,}")
+            self._show_frame()
             drafted = change & Change.DRAFT and session.draft is not None
             self.refresh(since=self._inference.since if drafted else 0.0)
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from PySide6.QtCore import QRectF, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QPainter, QPaintEvent
 from PySide6.QtWidgets import (
-    QDoubleSpinBox,
     QFrame,
     QHBoxLayout,
     QLabel,
@@ -25,7 +24,6 @@ from app.session import Change, Session
 from app.theme import GRID
 
 HEIGHT_PX = 180
-MAX_OFFSET_S = 36_000.0
 
 
 @dataclass(frozen=True)
@@ -94,6 +92,7 @@ class ReferencePanel(QFrame):
     """
 
     failed = Signal(str, str)  # sentence, advice
+    detached = Signal()
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -110,22 +109,14 @@ class ReferencePanel(QFrame):
     def _lay_out(self) -> None:
         name = QLabel("Reference")
         name.setProperty("quiet", True)
-        self.offset = QDoubleSpinBox(minimum=-MAX_OFFSET_S, maximum=MAX_OFFSET_S, decimals=3, singleStep=0.01)
-        self.offset.setSuffix(" s")
-        self.offset.setToolTip("Time in the take at which the video begins")
-        self.offset.setAccessibleName("Video offset")
-        self.offset.setKeyboardTracking(False)
-        self.offset.valueChanged.connect(lambda value: self._session.attach_video(self._session.video, value))
         away = QToolButton()
         away.setText("✕")
-        away.setToolTip("Take the reference video away")
-        away.setAccessibleName("Take the reference video away")
-        away.clicked.connect(lambda: self._session.attach_video(None))
+        away.setToolTip("Detach the reference video")
+        away.setAccessibleName("Detach the reference video")
+        away.clicked.connect(self.detached)
         row = QHBoxLayout()
         row.addWidget(name)
         row.addStretch(1)
-        row.addWidget(QLabel("begins at"))
-        row.addWidget(self.offset)
         row.addWidget(away)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, GRID, 0, 0)
@@ -140,11 +131,9 @@ class ReferencePanel(QFrame):
         session = self._session
         if change & (Change.TAKE | Change.MEDIA):
             self.setVisible(session.video is not None)
-            with QSignalBlocker(self.offset):
-                self.offset.setValue(session.video_offset_s)
         if session.video is not None and change & (Change.TAKE | Change.MEDIA | Change.PLAYHEAD):
             # the middle of the take's frame, or rounding would decide between two frames of a video at the same rate
-            time_s = (session.playhead + 0.5) / session.take.fps - session.video_offset_s
+            time_s = (session.playhead + 0.5) / session.take.fps - session.offset_s("video")
             self.reading.submit(_Wanted(session.video, time_s))
 
     def _arrived(self, wanted: _Wanted, frame: Frame | None) -> None:
@@ -152,7 +141,7 @@ class ReferencePanel(QFrame):
             self.shown.show_picture(None if frame is None else frame.picture)
 
     def _refused(self, wanted: _Wanted, sentence: str, advice: str) -> None:
-        """Say what is wrong, once: the video is taken away."""
+        """Say what is wrong, once: the video is put away, and looked for again when the project is opened."""
         if wanted.path == self._session.video:
             self._session.attach_video(None)
             self.failed.emit(sentence, advice)

@@ -25,9 +25,11 @@ Triangles = npt.NDArray[np.int32]  # (n, 3)
 Picture = npt.NDArray[np.uint8]  # (height, width, 3) sRGB
 GROUND = (0x23, 0x27, 0x2E)
 _GROUND = np.array(GROUND, np.float32) / 255.0
+BELOW_CHIN = 0.2  # parts of the way from chin to crown that are framed under the chin
 NECK_FADE = 0.3  # parts of the head's height over which the neck's cut end dissolves into the ground
 SAMPLES = 4
 HEAT_FULL_MM = 10.0
+STAGES = 3  # characters whose buffers are kept: source, target and one that was shown before
 # From still to far: a ramp of rising lightness that reads in grey and for colour-blind eyes too.
 HEAT = np.array([(52, 56, 66), (52, 84, 140), (86, 180, 233), (240, 228, 66), (255, 250, 225)], np.float64)
 
@@ -38,18 +40,20 @@ class Shot:
 
     Attributes
     ----------
-    faces : weights, (52,) each; two or more stand side by side
+    faces : weights, (52,) each; two or more stand side by side; None leaves a side empty
+    heads : whose head each face is on; the renderer's own where there is none
     camera : seen from where
     size : width and height in pixels
     compared_to : weights, (52,), whose distance to the face is painted on it in mm
     smooth_edges : four samples a pixel; without, a picture takes half the time
     """
 
-    faces: tuple[Array, ...]
+    faces: tuple[Array | None, ...]
     camera: Camera = field(default_factory=Camera)
     size: tuple[int, int] = (512, 512)
     compared_to: Array | None = None
     smooth_edges: bool = True
+    heads: tuple[Character | None, ...] = ()
 
 
 def heat(moved_mm: Array) -> npt.NDArray[np.uint8]:
@@ -58,21 +62,22 @@ def heat(moved_mm: Array) -> npt.NDArray[np.uint8]:
     return np.stack([np.interp(at, np.arange(len(HEAT)), channel) for channel in HEAT.T], axis=1).astype(np.uint8)
 
 
-class Renderer:
-    """Draws a character; raises `EngineError` where there is no OpenGL to draw with.
+class _Stage:
+    """One character in the scene: its buffers, its light, and the box that the camera frames.
 
     Parameters
     ----------
-    character : what is drawn
+    character : what stands on it
+    scene : where its meshes are put, unseen until it is drawn
     """
 
-    def __init__(self, character: Character) -> None:
+    def __init__(self, character: Character, scene: Any) -> None:
         pyrender = _pyrender()
-        self._character, self._lighting = character, Lighting(character)
-        self._flags = pyrender.RenderFlags.FLAT
+        self.character, self._lighting, self._scene = character, Lighting(character), scene
         neutral = character.neutral
-        self._low, self._high = _framed(character)
-        rise = (neutral[:, 1] - neutral[:, 1].min()) / (NECK_FADE * (self._high[1] - self._low[1]))
+        self.low, self.high = framed(character)
+        height = self.high[1] - self.low[1]
+        rise = (neutral[:, 1] - (self.low[1] - NECK_FADE / 2 * height)) / (NECK_FADE * height)
         self._solid = np.clip(rise, 0.0, 1.0)[:, None].astype(np.float32)
         closed, open_ = _split(character)
         self._primitives = [
@@ -86,11 +91,56 @@ class Renderer:
             for triangles, both in ((closed, False), (open_, True))
             if len(triangles)
         ]
+        self.mesh = pyrender.Mesh(self._primitives, is_visible=False)
+        self._node = scene.add(self.mesh)
+        self._vertex_rows = np.ones((len(neutral), 7), np.float32)  # position, colour: the layout of the buffer
+
+    def pose(self, weights: Array, eye: Array, compared_to: Array | None) -> None:
+        """Bring the buffers to a face, (52,) weights, as it is seen from `eye`, (3,); a context must be current."""
+        vertices = self.character.vertices(weights)
+        colours = None
+        if compared_to is not None:
+            moved = np.linalg.norm(vertices - self.character.vertices(compared_to), axis=1)
+            colours = to_linear(heat(moved))
+        self._vertex_rows[:, :3] = vertices
+        lit = self._lighting.shade(vertices, eye.astype(np.float32), colours)
+        self._vertex_rows[:, 3:6] = _GROUND + self._solid * (lit - _GROUND)
+        self._upload()
+
+    def _upload(self) -> None:
+        """Write the vertex buffer in place: pyrender itself reads positions only once, before the first drawing."""
+        from OpenGL.GL import GL_ARRAY_BUFFER, glBindBuffer, glBufferSubData
+
+        for primitive in self._primitives:
+            if not primitive._buffers:
+                primitive.positions = self._vertex_rows[:, :3].copy()
+                primitive.color_0 = self._vertex_rows[:, 3:].copy()
+                continue
+            glBindBuffer(GL_ARRAY_BUFFER, primitive._buffers[0])
+            glBufferSubData(GL_ARRAY_BUFFER, 0, self._vertex_rows.nbytes, self._vertex_rows)
+        glBindBuffer(GL_ARRAY_BUFFER, 0)
+
+    def leave(self) -> None:
+        """Take the character off the scene."""
+        self._scene.remove_node(self._node)
+
+
+class Renderer:
+    """Draws characters; raises `EngineError` where there is no OpenGL to draw with.
+
+    Parameters
+    ----------
+    character : whose head a face is on where a shot names no other
+    """
+
+    def __init__(self, character: Character) -> None:
+        pyrender = _pyrender()
+        self.character = character
+        self._flags = pyrender.RenderFlags.FLAT
         self._scene = pyrender.Scene(bg_color=[*(value / 255 for value in GROUND), 1.0])
-        self._scene.add(pyrender.Mesh(self._primitives))
+        self._stages: list[_Stage] = []  # the one drawn last comes last
         self._camera = pyrender.PerspectiveCamera(yfov=np.radians(FIELD_OF_VIEW_DEG), znear=50.0, zfar=6000.0)
         self._camera_node = self._scene.add(self._camera, pose=np.eye(4))
-        self._vertex_rows = np.ones((len(neutral), 7), np.float32)  # position, colour: the layout of the buffer
         try:
             self._target = pyrender.OffscreenRenderer(64, 64)
         except Exception as error:  # each platform fails with errors of its own
@@ -115,40 +165,39 @@ class Renderer:
         self._target._platform.make_current()
         self._samples.use(SAMPLES if shot.smooth_edges else 0)
         borders = np.linspace(0, width, len(shot.faces) + 1).round().astype(int)
+        heads = shot.heads or (None,) * len(shot.faces)
         panels = [
-            self._panel(weights, shot, int(right - left), height)
-            for weights, left, right in zip(shot.faces, borders, borders[1:], strict=False)
+            self._panel(weights, head or self.character, shot, (int(right - left), height))
+            for weights, head, left, right in zip(shot.faces, heads, borders, borders[1:], strict=False)
         ]
         return panels[0] if len(panels) == 1 else np.concatenate(panels, axis=1)
 
-    def _panel(self, weights: Array, shot: Shot, width: int, height: int) -> Picture:
-        pose = shot.camera.pose(self._low, self._high, aspect=width / height)
-        vertices = self._character.vertices(weights)
-        colours = None
-        if shot.compared_to is not None:
-            moved = np.linalg.norm(vertices - self._character.vertices(shot.compared_to), axis=1)
-            colours = to_linear(heat(moved))
-        self._vertex_rows[:, :3] = vertices
-        lit = self._lighting.shade(vertices, pose[:3, 3].astype(np.float32), colours)
-        self._vertex_rows[:, 3:6] = _GROUND + self._solid * (lit - _GROUND)
-        self._upload()
+    def _panel(self, weights: Array | None, head: Character, shot: Shot, size: tuple[int, int]) -> Picture:
+        width, height = size
+        if weights is None:
+            return np.full((height, width, 3), GROUND, np.uint8)
+        stage = self._stage(head)
+        pose = shot.camera.pose(stage.low, stage.high, aspect=width / height)
+        stage.pose(weights, pose[:3, 3], shot.compared_to)
         self._scene.set_pose(self._camera_node, pose)
         self._target.viewport_width, self._target.viewport_height = width, height
-        return np.asarray(self._target.render(self._scene, flags=self._flags))
+        stage.mesh.is_visible = True
+        try:
+            return np.asarray(self._target.render(self._scene, flags=self._flags))
+        finally:
+            stage.mesh.is_visible = False
 
-    def _upload(self) -> None:
-        """Write the vertex buffer in place: pyrender itself reads positions only once, before the first drawing."""
-        from OpenGL.GL import GL_ARRAY_BUFFER, glBindBuffer, glBufferSubData
-
-        self._target._platform.make_current()
-        for primitive in self._primitives:
-            if not primitive._buffers:
-                primitive.positions = self._vertex_rows[:, :3].copy()
-                primitive.color_0 = self._vertex_rows[:, 3:].copy()
-                continue
-            glBindBuffer(GL_ARRAY_BUFFER, primitive._buffers[0])
-            glBufferSubData(GL_ARRAY_BUFFER, 0, self._vertex_rows.nbytes, self._vertex_rows)
-        glBindBuffer(GL_ARRAY_BUFFER, 0)
+    def _stage(self, head: Character) -> _Stage:
+        """Return the stage of a character; the one that was not drawn for longest makes room for a new one."""
+        stage = next((each for each in self._stages if each.character is head), None)
+        if stage is None:
+            stage = _Stage(head, self._scene)
+        else:
+            self._stages.remove(stage)
+        self._stages.append(stage)
+        if len(self._stages) > STAGES:
+            self._stages.pop(0).leave()
+        return stage
 
     def close(self) -> None:
         """Give back what OpenGL holds."""
@@ -174,13 +223,13 @@ def _split(character: Character) -> tuple[Triangles, Triangles]:
     return triangles[largest], triangles[~largest]
 
 
-def _framed(character: Character) -> tuple[Array, Array]:
+def framed(character: Character) -> tuple[Array, Array]:
     """Return the box to frame, from a little under the chin to the crown; all of a character without that landmark."""
-    low, high = character.neutral.min(axis=0).astype(float), character.neutral.max(axis=0).astype(float)
+    points = character.neutral.astype(float)
     if "chin" in character.landmarks:
-        chin = float(character.neutral[character.landmarks["chin"], 1])
-        low[1] = max(low[1], chin - 0.2 * (high[1] - chin))
-    return low, high
+        chin, crown = float(points[character.landmarks["chin"], 1]), float(points[:, 1].max())
+        points = points[points[:, 1] >= chin - BELOW_CHIN * (crown - chin)]  # shoulders would make the face small
+    return points.min(axis=0), points.max(axis=0)
 
 
 def _pyrender() -> Any:

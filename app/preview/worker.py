@@ -6,18 +6,30 @@ from dataclasses import dataclass
 
 from app.background import LatestWins
 from app.preview.renderer import Picture, Renderer, Shot
+from app.sides import Side
 from engine import character
 from engine.character import Character
 
 
 @dataclass(frozen=True, eq=False)
 class Wanted:
-    """A shot, the character in it, when the user did what it shows (0: nobody waits), and whether it is a strip of variants."""
+    """What to draw.
+
+    Attributes
+    ----------
+    character : whose face; None is the bundled one
+    since : when what it shows was done, or arrived; 0 where nobody waits
+    live : whether it shows a live face
+    strip : whether it is a strip of variants
+    sides : what it shows side by side, for what is drawn over it
+    """
 
     shot: Shot
     character: Character | None = None
     since: float = 0.0
+    live: bool = False
     strip: bool = False
+    sides: tuple[Side, ...] = ()
 
 
 class RenderJob:
@@ -25,14 +37,13 @@ class RenderJob:
 
     def __init__(self) -> None:
         self._renderer: Renderer | None = None
-        self._character: Character | None = None
 
     def __call__(self, wanted: Wanted) -> Picture:
         """Return the picture of a shot."""
         shown = wanted.character or character.bundled()
-        if self._renderer is None or self._character is not shown:
-            self.close()
-            self._renderer, self._character = Renderer(shown), shown
+        if self._renderer is None:
+            self._renderer = Renderer(shown)
+        self._renderer.character = shown
         return self._renderer.draw(wanted.shot)
 
     def close(self) -> None:

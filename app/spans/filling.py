@@ -13,6 +13,7 @@ from app.commands import EditCommand
 from app.session import Change, Session
 from engine.controls import CONTROLS
 from engine.project import Span
+from engine.speech.visemes import Cue
 from engine.take import Array, Take
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ class FillRequest:
     guide_offset: int
     style: str
     seed: int
+    visemes: tuple[Cue, ...] = ()
 
     @property
     def inputs(self) -> dict[str, Any]:
@@ -44,6 +46,7 @@ class FillRequest:
             "controls": sorted(self.controls),
             "guide": self.guide.name if self.guide else "",
             "guide_offset": self.guide_offset,
+            "visemes": [[cue.start_s, cue.stop_s, cue.label] for cue in self.visemes],
             "style": self.style,
         }
 
@@ -85,16 +88,26 @@ class Filling(QObject):
         guide: Take | None = None,
         guide_offset: int = 0,
         keep_curves: bool = False,
+        keep_visemes: bool = False,
     ) -> None:
-        """Make variants for a span; pins that lie in it are met, and with `keep_curves` its asked curves followed."""
+        """Make variants for a span; pins that lie in it are met.
+
+        With `keep_curves` its asked curves are followed, with `keep_visemes` the mouth says what the visemes lane does.
+        """
         session = self._session
         inside = [pin for pin in session.marks.pins if span.start <= pin.frame < span.stop]
         pins = {pin.frame: dict(pin.weights) for pin in inside}
         controls = self._asked(span) if keep_curves else {}
         self.busy = True
-        self._request = FillRequest(session.take, span, pins, controls, guide, guide_offset, style, self.seed)
+        visemes = self.said(span) if keep_visemes else ()
+        self._request = FillRequest(session.take, span, pins, controls, guide, guide_offset, style, self.seed, visemes)
         self._work.submit(self._request)
         self.changed.emit()
+
+    def said(self, span: Span) -> tuple[Cue, ...]:
+        """Return the cues of the visemes lane that reach into a span, in seconds of the take."""
+        lane, fps = self._session.visemes, self._session.take.fps
+        return lane.over(span.start / fps, span.stop / fps) if lane is not None else ()
 
     def again(self) -> None:
         """Make other variants of the same span."""
@@ -171,6 +184,7 @@ def _make(request: FillRequest) -> list[Patch]:
         pins=request.pins,
         guide=request.guide,
         guide_offset=request.guide_offset,
+        visemes=request.visemes,
         controls=request.controls,
         style=request.style,  # type: ignore[arg-type]  # the section offers only what there is
         seed=request.seed,

@@ -83,6 +83,9 @@ class SpansSection(Section):
         self.style_box.setAccessibleName("Fill with")
         self.curves = QCheckBox("Follow my curves")
         self.curves.setToolTip("Let the fill follow what you dragged or drew inside the span.")
+        self.visemes = QCheckBox("Say the visemes")
+        self.visemes.setToolTip("Let the mouth say what the visemes lane does over the span.")
+        self.visemes.setChecked(True)
         self.guide_button = QPushButton("Guide by a take…")
         self.guide_button.setToolTip("Another take of the same rate, such as a rough one from a webcam.")
         self.fill_button, self.remove_button = QPushButton("Fill"), QPushButton("Unmark")
@@ -93,6 +96,7 @@ class SpansSection(Section):
             self.region,
             self.style_box,
             self.curves,
+            self.visemes,
             self.guide_button,
             self.fill_button,
             self.remove_button,
@@ -134,7 +138,13 @@ class SpansSection(Section):
             self.refused.emit("No span is chosen.", "Click one in the spans lane, or drag there to mark one.")
             return
         style = STYLES[self.style_box.currentText()]
-        self._filling.start(span, style=style, guide=self._guide, keep_curves=self.curves.isChecked())
+        self._filling.start(
+            span,
+            style=style,
+            guide=self._guide,
+            keep_curves=self.curves.isChecked(),
+            keep_visemes=self.visemes.isChecked(),
+        )
 
     def _set_region(self, _: int) -> None:
         chosen, marks = self.chosen, self.session.marks
@@ -152,7 +162,7 @@ class SpansSection(Section):
         self.guide_button.setText(f"Guide: {self._guide.name}" if self._guide else "Guide by a take…")
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.MARKS | Change.SELECTION):
+        if change & (Change.TAKE | Change.MARKS | Change.SELECTION | Change.VISEMES):
             self._show_list()
             self._show()
 
@@ -189,6 +199,7 @@ class SpansSection(Section):
         self.fill_button.setText("Filling…" if filling.busy else "Fill")
         self.fill_button.setEnabled(not filling.busy)
         if chosen is not None:
+            self.visemes.setVisible(bool(filling.said(chosen)))
             names = {region: title for title, region in REGIONS.items()}
             with QSignalBlocker(self.region):
                 self.region.setCurrentText(names[chosen.region])

@@ -1,16 +1,19 @@
-"""Pins and notes on the timeline."""
+"""Pins and notes on the timeline: however many there are, no more are drawn than there is room for."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator, Sequence
 
+import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter
 
 from app.theme import Palette
-from engine.project import Marks
+from engine.project import Marks, Note, Pin
 
 LANE_PX = 18
+APART_PX = 4  # a mark that is nearer to the one before is not drawn
+NOTE_PX = 220  # what a note's text may take
 
 
 def lanes(marks: Marks) -> list[str]:
@@ -18,35 +21,66 @@ def lanes(marks: Marks) -> list[str]:
     return [name for name, shown in (("pins", marks.pins), ("notes", marks.notes)) if shown]
 
 
-def draw_marks(painter: QPainter, marks: Marks, top: float, x_of: Callable[[float], float], colours: Palette) -> None:
-    """Draw each lane below `top`: a diamond for a pin with its range, a dot with its text for a note."""
+def draw_marks(
+    painter: QPainter, marks: Marks, name: str, place: tuple[QRectF, tuple[float, float]], colours: Palette
+) -> None:
+    """Draw one of `lanes` in its place: a box, and the view whose first and last frame are the box's edges.
+
+    A pin is a diamond with its range, a note a dot with its text.
+    """
+    box, view = place
+    per_frame = box.width() / max(1e-9, view[1] - view[0])
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    for row, name in enumerate(lanes(marks)):
-        middle = top + (row + 0.5) * LANE_PX
-        if name == "pins":
-            _draw_pins(painter, marks, middle, x_of, colours)
-        else:
-            _draw_notes(painter, marks, middle, x_of, colours)
+    if name == "pins":
+        _draw_pins(painter, marks.pins, box, (view[0], per_frame), colours)
+    else:
+        _draw_notes(painter, marks.notes, box, (view[0], per_frame), colours)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
 
 
-def _draw_pins(painter: QPainter, marks: Marks, y: float, x_of: Callable[[float], float], colours: Palette) -> None:
-    for pin in marks.pins:
-        x = x_of(pin.frame)
-        painter.setPen(QColor(colours.accent))
-        painter.drawLine(QPointF(x_of(pin.start), y), QPointF(x_of(pin.stop - 1), y))
-        painter.setBrush(QColor(colours.accent))
+def _draw_pins(
+    painter: QPainter, pins: Sequence[Pin], box: QRectF, scale: tuple[float, float], colours: Palette
+) -> None:
+    y, left, (first, per_frame) = box.center().y(), box.left(), scale
+    painter.setPen(QColor(colours.accent))
+    painter.setBrush(QColor(colours.accent))
+    ends = left + (np.array([(pin.start, pin.stop - 1) for pin in pins], float) - first) * per_frame
+    for start, stop in ends[_in_sight(ends[:, 0], ends[:, 1], box)].tolist():
+        painter.drawLine(QPointF(start, y), QPointF(stop, y))
+    places = left + (np.array([pin.frame for pin in pins], float) - first) * per_frame
+    for _, x in _apart(places, box):
         painter.drawPolygon([QPointF(x - 5, y), QPointF(x, y - 5), QPointF(x + 5, y), QPointF(x, y + 5)])
 
 
-def _draw_notes(painter: QPainter, marks: Marks, y: float, x_of: Callable[[float], float], colours: Palette) -> None:
-    places = [x_of(note.frame) for note in marks.notes]
-    for note, x, following in zip(marks.notes, places, [*places[1:], 1e9], strict=True):
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(colours.good))
+def _draw_notes(
+    painter: QPainter, notes: Sequence[Note], box: QRectF, scale: tuple[float, float], colours: Palette
+) -> None:
+    y, (first, per_frame) = box.center().y(), scale
+    places = box.left() + (np.array([note.frame for note in notes], float) - first) * per_frame
+    shown = list(_apart(places, box))
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(colours.good))
+    for _, x in shown:
         painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
-        room = min(220.0, following - x - 14)
+    painter.setPen(QColor(colours.text))
+    for (index, x), following in zip(shown, [*(x for _, x in shown[1:]), np.inf], strict=True):
+        room = min(NOTE_PX, following - x - 14)
         if room > 24:
-            painter.setPen(QColor(colours.text))
-            shown = painter.fontMetrics().elidedText(note.text, Qt.TextElideMode.ElideRight, int(room))
-            painter.drawText(QRectF(x + 8, y - LANE_PX / 2, room, LANE_PX), Qt.AlignmentFlag.AlignVCenter, shown)
+            text = painter.fontMetrics().elidedText(notes[index].text, Qt.TextElideMode.ElideRight, int(room))
+            painter.drawText(QRectF(x + 8, box.top(), room, box.height()), Qt.AlignmentFlag.AlignVCenter, text)
+
+
+def _in_sight(starts: np.ndarray, stops: np.ndarray, box: QRectF) -> np.ndarray:
+    """Return which stretches to draw, given in pixels: those in the box that reach beyond the ones before."""
+    beyond = stops > np.maximum.accumulate(np.concatenate([[-np.inf], stops[:-1]])) + 1
+    return np.flatnonzero((stops >= box.left()) & (starts <= box.right()) & beyond)
+
+
+def _apart(places: np.ndarray, box: QRectF) -> Iterator[tuple[int, float]]:
+    """Yield index and place, in pixels, of the marks that can be told from the one before; a text may reach in from the left."""
+    last = -np.inf
+    for index in np.flatnonzero((places >= box.left() - NOTE_PX) & (places <= box.right() + 5)).tolist():
+        x = float(places[index])
+        if x - last >= APART_PX:
+            last = x
+            yield index, x

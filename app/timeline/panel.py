@@ -1,42 +1,73 @@
-"""The ruler, the waveform and the spans lane above the curves, and the scroll bar beneath them."""
+"""The ruler and the lanes of sound, visemes, spans, flags and marks above the curves, and the scroll bar beneath."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
-from PySide6.QtGui import QBrush, QColor, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
+from PySide6.QtGui import (
+    QColor,
+    QContextMenuEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QWheelEvent,
+)
 from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
 
 from app.session import Change, Session
 from app.theme import GRID, Palette
+from app.timeline.flags import FLAGS_PX, FlagLane
 from app.timeline.marks import LANE_PX, draw_marks, lanes
+from app.timeline.spans import SpanLane
+from app.timeline.viseme_editing import VisemeEditing
+from app.timeline.visemes import VISEMES_PX, Place
 from app.timeline.waveform import draw_waveform
 from engine.take import timecode
 
 RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 76
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
+SLACK_PX = 3  # a press that moves no farther is a click
+STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
+LAYOUT = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES  # what may bring lanes or take them away
+SHOWN = LAYOUT | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
+HINTS = {
+    "": "Drag to scrub. Shift-drag selects, the wheel zooms.",
+    "audio": "Drag to move the sound against the face.",
+    "spans": "Drag to mark a span, click one to choose it.",
+    "visemes": "Drag the ends of a block, double-click to select it, right-click to change it.",
+    "flags": "What to look at: click a mark to go there, or Up and Down from one to the next.",
+}
 
 
 class Timeline(QWidget):
-    """Timecode to scrub on, and the spans the tracker lost.
+    """Timecode to scrub on, and beneath it a lane for each kind of thing that lies in time.
 
     Parameters
     ----------
     session : whose time is shown
     gutter_px : width of the lanes' gutter, so that frames stand under their ticks
+
+    Attributes
+    ----------
+    visemes : the lane of what is said, under the hand
     """
 
     marked = Signal()  # the selection was drawn in the lane: it is to become a span
+    slid = Signal()  # the sound was dragged to where it is shown
 
     def __init__(self, session: Session, colours: Palette, *, gutter_px: int) -> None:
         super().__init__()
         self._session, self._colours, self._gutter = session, colours, gutter_px
         self._selecting: int | None = None
         self._marking = self._scrubbing = False
+        self._sliding: tuple[float, float] | None = None  # where the sound was taken hold of, and its beginning then
+        self.in_frames = False
+        self._flags, self._spans = FlagLane(), SpanLane()
+        self.visemes = VisemeEditing(session, self, self._viseme_place)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setMouseTracking(True)
         self.setAccessibleName("Timeline")
-        self.setToolTip("Drag on the ruler to scrub, in the spans lane to mark. Shift-drag selects, the wheel zooms.")
         session.changed.connect(self._on_change)
 
     def paint_with(self, colours: Palette) -> None:
@@ -44,24 +75,48 @@ class Timeline(QWidget):
         self._colours = colours
         self.update()
 
+    def count_in_frames(self, on: bool) -> None:
+        """Count in frames on the ruler, or in timecode."""
+        self.in_frames = on
+        self.update()
+
     def sizeHint(self) -> QSize:
         """As high as its lanes."""
-        return QSize(400, self._marks_top() + LANE_PX * len(lanes(self._session.marks)))
+        return QSize(400, round(max(box.bottom() for box in self._lanes().values())))
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.MEDIA | Change.MARKS):
+        if change & LAYOUT:
             self.updateGeometry()
-        shown = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
-        if change & shown:
+        if change & SHOWN:
             self.update()
 
     # --- geometry
 
-    def _spans_top(self) -> int:
-        return RULER_PX + (AUDIO_PX if self._session.audio is not None else 0)
+    def _lanes(self) -> dict[str, QRectF]:
+        """Return the lanes that are there, from top to bottom, each with its box right of the gutter."""
+        session = self._session
+        heights = {"audio": AUDIO_PX} if session.audio is not None else {}
+        if session.visemes is not None:
+            heights["visemes"] = VISEMES_PX
+        heights |= {"spans": SPANS_PX, "flags": FLAGS_PX}
+        heights |= dict.fromkeys(lanes(session.marks), LANE_PX)
+        boxes, top = {}, float(RULER_PX)
+        for name, height in heights.items():
+            boxes[name] = QRectF(self._gutter, top, self._span_px(), height)
+            top += height
+        return boxes
 
-    def _marks_top(self) -> int:
-        return self._spans_top() + SPANS_PX
+    def lane_box(self, name: str) -> QRectF:
+        """Return where a lane is; an empty box for one that is not there."""
+        return self._lanes().get(name, QRectF())
+
+    def _lane_at(self, y: float) -> str:
+        return next((name for name, box in self._lanes().items() if box.top() < y <= box.bottom()), "")
+
+    def _viseme_place(self) -> Place:
+        first, last = self._session.view
+        fps = self._session.take.fps
+        return self.lane_box("visemes").adjusted(0, 3, 0, -3), (first / fps, last / fps)
 
     def _span_px(self) -> float:
         return max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
@@ -79,21 +134,22 @@ class Timeline(QWidget):
     # --- drawing
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw ruler, waveform, spans, selection and playhead."""
-        painter = QPainter(self)
+        """Draw the ruler, every lane, the selection and the playhead."""
+        painter, boxes = QPainter(self), self._lanes()
         painter.setPen(QColor(self._colours.quiet))
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-        painter.drawText(QRectF(GRID, self._spans_top(), self._gutter, SPANS_PX), left, "spans")
-        if self._session.audio is not None:
-            painter.drawText(QRectF(GRID, RULER_PX, self._gutter, AUDIO_PX), left, "audio")
-        for row, name in enumerate(lanes(self._session.marks)):
-            painter.drawText(QRectF(GRID, self._marks_top() + row * LANE_PX, self._gutter, LANE_PX), left, name)
+        for name, box in boxes.items():
+            painter.drawText(QRectF(GRID, box.top(), self._gutter, box.height()), left, name)
         painter.setClipRect(QRectF(self._gutter, 0, self._span_px(), self.height()))
         self._draw_selection(painter)
         self._draw_ticks(painter)
         self._draw_audio(painter)
-        self._draw_spans(painter)
-        draw_marks(painter, self._session.marks, self._marks_top(), self.x_of, self._colours)
+        self.visemes.draw(painter, self._colours)
+        marks, view = self._session.marks, self._session.view
+        self._spans.draw(painter, marks.spans, boxes["spans"], view, self._colours)
+        self._flags.draw(painter, self._session.flags, boxes["flags"], view, self._colours)
+        for name in lanes(marks):
+            draw_marks(painter, marks, name, (boxes[name], view), self._colours)
         x = self.x_of(self._session.playhead)
         painter.setPen(QPen(QColor(self._colours.text), 1))
         painter.drawLine(int(x), 2, int(x), self.height())
@@ -115,7 +171,8 @@ class Timeline(QWidget):
         fps = session.take.fps
         first, last = session.view
         per_second = self._span_px() / max(1e-9, (last - first) / fps)
-        step = next((s for s in STEPS_S if s * per_second >= LABEL_PX), STEPS_S[-1])
+        steps_s = [frames / fps for frames in STEPS_FRAMES] if self.in_frames else STEPS_S
+        step = next((s for s in steps_s if s * per_second >= LABEL_PX), steps_s[-1])
         index = int(first / fps / step)
         middle = Qt.AlignmentFlag.AlignCenter
         while index * step * fps <= last:
@@ -123,7 +180,8 @@ class Timeline(QWidget):
             x = self.x_of(time_s * fps)
             painter.setPen(QColor(self._colours.quiet))
             if x >= self._gutter + LABEL_PX / 2 - 6:  # the first would be cut in half
-                painter.drawText(QRectF(x - 50, 4, 100, 14), middle, timecode(time_s, fps))
+                shown = f"{round(time_s * fps):,}" if self.in_frames else timecode(time_s, fps)
+                painter.drawText(QRectF(x - 50, 4, 100, 14), middle, shown)
             painter.setPen(QColor(self._colours.edge))
             painter.drawLine(int(x), 20, int(x), RULER_PX)
             index += 1
@@ -131,62 +189,64 @@ class Timeline(QWidget):
     def _draw_audio(self, painter: QPainter) -> None:
         session = self._session
         if session.audio is not None:
-            first_s, last_s = (frame / session.take.fps - session.audio_offset_s for frame in session.view)
+            first_s, last_s = (frame / session.take.fps - session.offset_s("audio") for frame in session.view)
             box = QRectF(self._gutter, RULER_PX + 2, self._span_px(), AUDIO_PX - 4)
             draw_waveform(painter, session.audio, box, (first_s, last_s), self._colours.quiet)
-
-    def _draw_spans(self, painter: QPainter) -> None:
-        warning = QColor(self._colours.warning)
-        tint = QColor(warning)
-        tint.setAlphaF(0.12)
-        for span in self._session.marks.spans:
-            left, right = self.x_of(span.start - 0.5), self.x_of(span.stop - 0.5)
-            if right < self._gutter or left > self.width():
-                continue
-            box = QRectF(left, self._spans_top() + 3, max(3.0, right - left), SPANS_PX - 7)
-            painter.fillRect(box, tint)
-            painter.fillRect(box, QBrush(warning, Qt.BrushStyle.BDiagPattern))
-            painter.setPen(QPen(warning, 1))
-            painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawRect(box)
-            title = "lost" if span.kind == "lost" else span.region
-            text = painter.fontMetrics().horizontalAdvance(title) + 10
-            if box.width() > text + 4:
-                label = QRectF(box.center().x() - text / 2, box.top() + 1, text, box.height() - 2)
-                painter.fillRect(label, QColor(self._colours.panel))
-                painter.drawText(label, Qt.AlignmentFlag.AlignCenter, title)
 
     # --- the mouse
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Scrub on the ruler; on the lane choose a span, or begin to mark one; with Shift select."""
+        """Scrub on the ruler; in a lane take hold of what is there, or begin to mark a span; with Shift select."""
         if event.button() != Qt.MouseButton.LeftButton:
             return
-        frame = round(self.frame_at(event.position().x()))
-        in_lane = self._spans_top() < event.position().y() <= self._marks_top()
-        hit = [span for span in self._session.marks.spans if span.start <= frame < span.stop] if in_lane else []
-        if hit:
+        x, lane = event.position().x(), self._lane_at(event.position().y())
+        frame = round(self.frame_at(x))
+        if lane == "spans" and (hit := [span for span in self._session.marks.spans if span.start <= frame < span.stop]):
             self._session.select((hit[0].start, hit[0].stop))
             self._session.move_playhead(hit[0].start)
-        elif in_lane or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            self._selecting, self._marking = frame, in_lane
-        else:
+        elif lane == "flags" and (mark := self._flags.at(x)) is not None:
+            self._session.move_playhead(mark.flag.start)
+        elif lane == "spans" or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            self._selecting, self._marking = frame, lane == "spans"
+        elif lane == "audio":
+            self._sliding = event.position().x(), self._session.offset_s("audio")
+        elif lane != "visemes" or not self.visemes.take(x):
             self._scrubbing = True
             self._session.move_playhead(frame)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Go on with what the press began."""
+        """Go on with what the press began; show by the pointer what a press would take hold of."""
         frame = round(self.frame_at(event.position().x()))
-        if self._selecting is not None:
+        if self.visemes.dragging:
+            self.visemes.move(event.position().x())
+        elif self._selecting is not None:
             first, last = sorted((self._selecting, frame))
             self._session.select((first, last + 1))
         elif self._scrubbing:
             self._session.move_playhead(frame)
+        elif self._sliding is not None:
+            self._slide(event.position().x())
+        else:
+            self._show_pointer(event.position())
+
+    def _slide(self, x: float) -> None:
+        """Take the sound along with the mouse; back where it began it is left as it was."""
+        assert self._sliding is not None
+        began, offset_s = self._sliding
+        if self._session.sliding is not None or abs(x - began) > SLACK_PX:
+            self._session.slide("audio", offset_s + (self.frame_at(x) - self.frame_at(began)) / self._session.take.fps)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End the selection, or make it a span; a mere click clears it."""
+        if self.visemes.dragging:
+            self.visemes.release()
         frame, selecting = round(self.frame_at(event.position().x())), self._selecting
         self._selecting, self._scrubbing = None, False
+        held, self._sliding = self._sliding, None
+        if held is not None and self._session.sliding is None:
+            self._session.move_playhead(frame)
+        elif held is not None:
+            self.slid.emit()
         if selecting is None:
             return
         if frame == selecting:
@@ -194,6 +254,38 @@ class Timeline(QWidget):
             self._session.move_playhead(frame)
         elif self._marking:
             self.marked.emit()
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Select the frames of a viseme."""
+        if self._lane_at(event.position().y()) == "visemes":
+            self.visemes.drop()
+            self.visemes.select(event.position().x())
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer what can be done with a viseme."""
+        if self._lane_at(event.y()) == "visemes":
+            self.visemes.open_menu(event.x(), event.globalPos(), self._colours)
+
+    def told_at(self, place: QPointF) -> str:
+        """Return what to tell of a place in the widget."""
+        lane = self._lane_at(place.y())
+        mark = self._flags.at(place.x()) if lane == "flags" else None
+        if mark is not None:
+            return mark.sentence
+        said = self.visemes.tell(place.x()) if lane == "visemes" and place.x() >= self._gutter else ""
+        return said or HINTS.get(lane, HINTS[""])
+
+    def _show_pointer(self, place: QPointF) -> None:
+        self.setToolTip(self.told_at(place))
+        lane = self._lane_at(place.y())
+        if lane == "visemes" and self.visemes.edge_at(place.x()) is not None:
+            self.setCursor(Qt.CursorShape.SplitHCursor)
+        elif lane == "audio":
+            self.setCursor(Qt.CursorShape.SizeHorCursor)
+        elif lane == "flags" and self._flags.at(place.x()) is not None:
+            self.setCursor(Qt.CursorShape.PointingHandCursor)
+        else:
+            self.unsetCursor()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom around the pointer; with Shift or sideways pan."""

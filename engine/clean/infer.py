@@ -19,6 +19,9 @@ Floats = npt.NDArray[np.float32]
 _SHAPES = len(SHAPES)
 BELIEVABLE = (-1.0, 2.0)  # a weight beyond these is a fault of the tracker or of the network, not a face
 FROZEN_S = 1.0  # a frame that comes again for longer than this is a tracker that stands, not a face that rests
+LEAD_S = 0.008  # how far ahead a moving shape is shown, at most: the estimate trails the face by about as much
+LEAD_FPS = 60.0  # below this rate a speed is old news, and showing it ahead would put corners into the motion
+SLOW_PER_S = 0.5  # what is slower than this is not shown ahead: at rest it would be jitter
 STEP_S = (1e-3, 0.5)  # a longer gap is taken for this long: no face extrapolates further
 
 
@@ -32,6 +35,7 @@ class CleanState:
     velocity : (52,) float32, its derivative per second
     hidden, cell : (layers, hidden) float32 of the recurrent layers
     landing : the way back after a lost run
+    ahead : (52,) float32, how far the estimate is shown ahead of itself, so that it does not trail the face
     seen : (52,) float32, the last frame with a face
     frozen_s : for how long the tracker has sent that very frame, seconds
     """
@@ -41,13 +45,14 @@ class CleanState:
     hidden: Floats
     cell: Floats
     landing: Landing
+    ahead: Floats
     seen: Floats
     frozen_s: float = 0.0
 
     @property
     def shown(self) -> Floats:
-        """(52,) float32, 0..1: the estimate, or the way back to it after a lost run."""
-        shown: Floats = np.clip(self.weights + self.landing.offset, 0.0, 1.0)
+        """(52,) float32, 0..1: the estimate a moment ahead, or the way back to it after a lost run."""
+        shown: Floats = np.clip(self.weights + self.landing.offset + self.ahead, 0.0, 1.0)
         return shown
 
 
@@ -79,7 +84,8 @@ class Cleaner:
         """Return the state at rest on a first frame, (52,)."""
         still = np.zeros((self._config.layers, self._config.hidden), np.float32)
         first = np.clip(weights, 0.0, 1.0).astype(np.float32)
-        return CleanState(first, np.zeros(_SHAPES, np.float32), still, still, no_landing(_SHAPES), first)
+        rest = np.zeros(_SHAPES, np.float32)
+        return CleanState(first, rest, still, still, no_landing(_SHAPES), rest, first)
 
     def step(self, seen: npt.ArrayLike | None, step_s: float, state: CleanState) -> CleanState:
         """Advance one frame: state in, state out.
@@ -112,7 +118,15 @@ class Cleaner:
         jump = weights - state.weights
         landing = advance(state.landing, jump, state.velocity, float(step), present=frame is not None)
         last = state.seen if frame is None else frame
-        return CleanState(weights, jump / step, hidden, cell, landing, last, frozen_s)
+        returns = frame is not None and state.landing.gap_s > 0  # such a leap is no motion
+        ahead = state.ahead if returns else _ahead(jump / step, step)
+        return CleanState(weights, jump / step, hidden, cell, landing, ahead, last, frozen_s)
+
+
+def _ahead(velocity: Floats, step_s: np.float32) -> Floats:
+    """Return how far moving shapes get in the time that the estimate trails them."""
+    lead_s = np.float32(LEAD_S * min(1.0, 1.0 / (LEAD_FPS * float(step_s))) ** 2)
+    return lead_s * (velocity - np.clip(velocity, -SLOW_PER_S, SLOW_PER_S))
 
 
 def _awake(frozen_s: float) -> float:

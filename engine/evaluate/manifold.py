@@ -139,6 +139,7 @@ def evenly(count: int, frames: int = FRAMES) -> npt.NDArray[np.int64]:
     return np.asarray(np.linspace(0, frames - 1, count).round(), np.int64)
 
 
+@lru_cache(maxsize=64)
 def retarget_errors(data: Path | None, labels: int, method: str, *, suggested: bool = False) -> Array:
     """Return the distance of each frame's points from the truth, (expressions, frames), mm."""
     source_rest = bundled().neutral[heads().source_points].astype(np.float64)
@@ -177,6 +178,7 @@ def _drivers(rest: Array) -> dict[str, Callable[[Array], Array]]:
     }
 
 
+@lru_cache(maxsize=4)
 def drive_errors(data: Path | None) -> dict[str, Array]:
     """Return by method the mean distance from the truth, (faces, 2), mm: over the face, over the whole labelled part.
 

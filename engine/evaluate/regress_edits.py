@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from engine.anatomy import impossible
 from engine.controls import bundled_measurer
 from engine.corpus import Piece, data_folder, split, whole_faces
-from engine.evaluate.plausibility import Recorded, impossible, recorded
+from engine.evaluate.plausibility import Recorded, recorded
 from engine.evaluate.regress import Method, Report, kept_of, methods, pieces_to_measure
 from engine.regress.areas import AREAS
 from engine.take import SHAPES, Array

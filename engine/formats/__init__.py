@@ -24,7 +24,8 @@ class Format:
 FORMATS: tuple[Format, ...] = (Format("Live Link Face CSV", (".csv",), livelink.read, livelink.write),)
 
 
-def _format_of(path: Path) -> Format:
+def format_of(path: Path) -> Format:
+    """Return the format that a file's ending names; raises `FormatError` where there is none."""
     for entry in FORMATS:
         if path.suffix.lower() in entry.endings:
             return entry
@@ -45,9 +46,9 @@ def read_take(path: Path) -> Take:
             return replay(project.contents).take
         finally:
             project.close()
-    return _format_of(path).read(path)
+    return format_of(path).read(path)
 
 
 def write_take(take: Take, path: Path) -> None:
     """Write a take to any supported file; an existing file is replaced whole or left as it was."""
-    _format_of(path).write(take, path)
+    format_of(path).write(take, path)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -125,11 +125,34 @@ def _encode(take: Take) -> Iterator[bytes]:
             values[:, column] = np.where(changed[:, index], source[:, index], values[:, column])
     lost = origin.lost & take.lost[origin.rows]
     yield ",".join(origin.header).encode() + origin.newline
-    count = len(origin.header) - 2
-    row_format = ",".join([f"%.{origin.decimals}f"] * count)
-    for timecode, row, is_lost in zip(origin.timecodes, values.tolist(), lost, strict=True):
+    yield from _rows(origin.timecodes, values, lost, origin.decimals, origin.newline)
+
+
+def _rows(
+    timecodes: Iterable[bytes], values: Array, lost: Mask, decimals: int = 10, newline: bytes = b"\n"
+) -> Iterator[bytes]:
+    count = values.shape[1]
+    row_format = ",".join([f"%.{decimals}f"] * count)
+    for timecode, row, is_lost in zip(timecodes, values.tolist(), lost, strict=True):
         body = b"0" if is_lost else f"{count},{row_format % tuple(row)}".encode()
-        yield timecode + b"," + body + origin.newline
+        yield timecode + b"," + body + newline
+
+
+def header() -> bytes:
+    """Return the first line of a file that grows row by row."""
+    return ",".join(DEFAULT_HEADER).encode() + b"\n"
+
+
+def rows(times_s: Array, weights: Array, rotations: Array, lost: Mask) -> Iterator[bytes]:
+    """Yield the lines of frames at times of their own: weights (frames, 52), rotations (frames, 9), lost (frames,)."""
+    timecodes = (_format_timecode(float(tick)) for tick in np.round(times_s * TICKS_PER_SECOND, 3))
+    return _rows(timecodes, _recorded_columns(weights, rotations), lost)
+
+
+def _recorded_columns(weights: Array, rotations: Array) -> Array:
+    """Return (frames, 61) columns as `DEFAULT_HEADER` names them."""
+    order = [SHAPE_INDEX[_recorded_name(name, swapped=True)] for name in SHAPES]
+    return np.concatenate([weights[:, order], rotations], axis=1)
 
 
 def _fits(take: Take, origin: Origin) -> bool:
@@ -140,10 +163,7 @@ def _new_origin(take: Take) -> Origin:
     frames = np.arange(len(take))
     ticks = np.round((take.start_s + frames / take.fps) * TICKS_PER_SECOND, 3)
     timecodes = tuple(_format_timecode(float(tick)) for tick in ticks)
-    values = np.zeros((len(take), len(DEFAULT_HEADER) - 2))
-    for index, name in enumerate(SHAPES):
-        values[:, index] = take.weights[:, SHAPE_INDEX[_recorded_name(name, swapped=True)]]
-    values[:, len(SHAPES) :] = take.rotations
+    values = _recorded_columns(take.weights, take.rotations)
     return Origin(DEFAULT_HEADER, timecodes, frames, values, take.lost)
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from engine.errors import FormatError
+from engine.formats.atomic import write_bytes
 from engine.formats.markers_text import decoded, lines_of
 
 EXPECTED = "A landmark file has the columns marker,vertex and one row for each marker."
@@ -28,3 +30,9 @@ def read(path: Path, *, vertices: int) -> dict[str, int]:
     if not found:
         raise FormatError(f"{path.name} names no marker.", EXPECTED)
     return found
+
+
+def write(places: Mapping[str, int], path: Path) -> None:
+    """Write vertices by marker name for `read`; raises `EngineError` when the folder cannot be written."""
+    rows = ["marker,vertex", *(f"{name},{vertex}" for name, vertex in places.items()), ""]
+    write_bytes(path, ["\n".join(rows).encode()])

@@ -12,8 +12,15 @@ from engine.take import SHAPE_INDEX, SHAPES
 SUBJECT = "iFacialMocap"
 MAX_BYTES = 8192
 MAX_DEGREES = 3600.0
-_WEIGHT = re.compile(r"^(\w{1,40})[-&](-?\d{1,6})$", re.ASCII)
+_WEIGHT = re.compile(r"(?:\A|(?<=\|))(\w{1,40})[-&](-?\d{1,6})(?=\||\n?\Z)", re.ASCII)
 _ROTATION_COLUMNS = {"head": 0, "leftEye": 3, "rightEye": 6}
+# Sides are written `_L` and `_R`, or in full.
+_COLUMNS = SHAPE_INDEX | {
+    f"{name.removesuffix(side)}_{side[0]}": column
+    for name, column in SHAPE_INDEX.items()
+    for side in ("Left", "Right")
+    if name.endswith(side)
+}
 # The app says pitch, yaw, roll (about x, y, z); ours are yaw, pitch, roll.
 _YAW_PITCH_ROLL = (1, 0, 2)
 
@@ -26,26 +33,19 @@ def decode(data: bytes) -> Packet | Drop:
     if len(data) > MAX_BYTES:
         return Drop.LENGTH
     try:
-        entries = data.decode("ascii").split("|")
+        text = data.decode("ascii")
     except UnicodeDecodeError:
         return Drop.TEXT
-    weights, rotations, found = np.zeros(len(SHAPES), np.float32), np.zeros(ROTATION_COUNT, np.float32), 0
-    for entry in entries:
-        if "#" in entry:
-            if not _read_rotation(entry.lstrip("="), rotations):
-                return Drop.TEXT
-        elif match := _WEIGHT.match(entry):
-            column = SHAPE_INDEX.get(_full_name(match[1]))
-            if column is not None:
-                weights[column] = int(match[2]) / 100.0
-                found += 1
-    return packet(SUBJECT, None, FALLBACK_FPS, weights, rotations) if found else Drop.TEXT
-
-
-def _full_name(name: str) -> str:
-    """Return the ARKit name of a shape that ends on `_L` or `_R`."""
-    side = {"_L": "Left", "_R": "Right"}.get(name[-2:])
-    return name[:-2] + side if side else name
+    rotations = np.zeros(ROTATION_COUNT, np.float32)
+    for entry in text.split("|") if "#" in text else ():
+        if "#" in entry and not _read_rotation(entry.lstrip("="), rotations):
+            return Drop.TEXT
+    found = {_COLUMNS[name]: int(percent) for name, percent in _WEIGHT.findall(text) if name in _COLUMNS}
+    if not found:
+        return Drop.TEXT
+    weights = np.zeros(len(SHAPES), np.float32)
+    weights[list(found)] = np.array(list(found.values())) / 100.0
+    return packet(SUBJECT, None, FALLBACK_FPS, weights, rotations)
 
 
 def _read_rotation(entry: str, rotations: Floats) -> bool:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import select
 import socket
 import threading
 import time
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +23,7 @@ QUEUE = 64  # datagrams waiting to be cleaned: half a second of the fastest phon
 FRAMES = 512  # cleaned frames waiting to be shown
 PER_S = 500.0  # datagrams a second of one sender that are read at all; a phone sends 60
 SENDERS = 8  # that have an allowance of their own
+LISTEN_TO = "Use 127.0.0.1, or 0.0.0.0 to hear the whole network."
 _POLL_S = 0.2  # how long closing may take
 _LATENCIES = 1024
 
@@ -67,14 +70,22 @@ class Listener:
     stream : what the datagrams are handed to
     bind : address to listen on; other computers and phones are heard only when this is not loopback
     port : UDP port; 0 picks a free one
+    on_frames : called on the listener's thread whenever there are new frames; must return at once
 
     Raises
     ------
     EngineError : when the port cannot be listened on
     """
 
-    def __init__(self, stream: Stream, *, bind: str = LOOPBACK, port: int = PORT) -> None:
-        self.stream = stream
+    def __init__(
+        self,
+        stream: Stream,
+        *,
+        bind: str = LOOPBACK,
+        port: int = PORT,
+        on_frames: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.stream, self._on_frames = stream, on_frames
         self._socket = _open(bind, port)
         self.address: tuple[str, int] = self._socket.getsockname()[:2]
         self._frames: deque[LiveFrame] = deque(maxlen=FRAMES)
@@ -122,6 +133,7 @@ class Listener:
                 if frame is not None:
                     self._frames.append(frame)
                     self._latencies.append(frame.latency_ms)
+                    self._on_frames()
 
     def _collect(self, waiting: deque[tuple[bytes, float]]) -> None:
         """Wait for a datagram, then take what else has come; the oldest go where there is no room.
@@ -150,11 +162,13 @@ def _open(bind: str, port: int) -> socket.socket:
         family = socket.getaddrinfo(bind, port, type=socket.SOCK_DGRAM)[0][0]
         opened = socket.socket(family, socket.SOCK_DGRAM)
     except (OSError, OverflowError, UnicodeError) as error:
-        raise EngineError(f"{bind}:{port} is no address to listen on.", "Use 127.0.0.1, or 0.0.0.0 for all.") from error
+        raise EngineError(f"{bind}:{port} is no address to listen on.", LISTEN_TO) from error
     try:
         opened.bind((bind, port))
     except (OSError, OverflowError) as error:
         opened.close()
+        if getattr(error, "errno", None) == errno.EADDRNOTAVAIL:
+            raise EngineError(f"{bind} is no address of this computer.", LISTEN_TO) from error
         reason = getattr(error, "strerror", None) or "no such port"
         raise EngineError(
             f"Port {port} on {bind} cannot be listened on: {reason.lower()}.",

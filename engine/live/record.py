@@ -14,6 +14,8 @@ from engine.take import SHAPES, Array, Take
 MAX_FRAMES = 1_000_000  # over four and a half hours at 60 fps; a sender gone mad must not fill memory
 STANDARD_FPS = (24.0, 25.0, 30.0, 50.0, 60.0, 120.0)
 _CHUNK = 4096
+_COLUMNS = 2 + len(SHAPES) + ROTATION_COUNT
+_NONE: Array = np.zeros((0, _COLUMNS))
 
 
 class Recorder:
@@ -42,7 +44,7 @@ class Recorder:
             if self.full:
                 return
             if self._count % _CHUNK == 0:
-                self._chunks.append(np.full((_CHUNK, 2 + len(SHAPES) + ROTATION_COUNT), np.nan))
+                self._chunks.append(np.full((_CHUNK, _COLUMNS), np.nan))
             row = self._chunks[-1][self._count % _CHUNK]
             row[0], row[1] = arrival.time_s, arrival.fps
             row[2 + len(SHAPES) :] = arrival.rotations
@@ -50,14 +52,19 @@ class Recorder:
                 row[2 : 2 + len(SHAPES)] = arrival.weights
             self._count += 1
 
+    def since(self, count: int) -> Array:
+        """Return what was kept after the first `count` arrivals, (n, 63): time, rate, weights (NaN: no face), rotations."""
+        with self._lock:
+            kept = np.concatenate(self._chunks[count // _CHUNK :])[count % _CHUNK :] if count < self._count else _NONE
+            return kept[: self._count - count]
+
     def take(self, name: str = "live") -> Take:
         """Return what was kept as a take at the sender's rate; raises `EditError` where no frame had a face.
 
         Frames that did not arrive, or had no face, are marked lost and interpolated; of a doubled frame the later
         arrival counts.
         """
-        with self._lock:
-            rows = np.concatenate(self._chunks)[: self._count] if self._chunks else np.zeros((0, 2))
+        rows = self.since(0)
         if not len(rows) or not np.isfinite(rows[:, 2]).any():
             raise EditError("Nothing was recorded: no frame with a face arrived.", "Check port, address and subject.")
         rows = rows[np.argsort(rows[:, 0], kind="stable")]

@@ -30,7 +30,8 @@ class LiveFrame:
     clean : (52,) float32, 0..1
     rotations : (9,) float32, radians
     lost : whether the phone saw no face
-    latency_ms : from the datagram's arrival until `clean` was ready
+    arrived_s : when the datagram arrived, on the clock that the listener reads
+    latency_ms : from then until `clean` was ready
     """
 
     subject: str
@@ -40,6 +41,7 @@ class LiveFrame:
     clean: Floats
     rotations: Floats
     lost: bool
+    arrived_s: float
     latency_ms: float
 
 
@@ -171,7 +173,9 @@ class Stream:
         clean = (1 - self.strength) * self._raw + self.strength * self._state.shown
         latency_ms = (now() - arrived_s) * 1e3
         lost = arrival.weights is None
-        return LiveFrame(subject, arrival.time_s, arrival.fps, self._raw, clean, arrival.rotations, lost, latency_ms)
+        return LiveFrame(
+            subject, arrival.time_s, arrival.fps, self._raw, clean, arrival.rotations, lost, arrived_s, latency_ms
+        )
 
     def _advance(self, arrival: Arrival) -> CleanState:
         """Return the state after a frame; frames that never came are bridged by the face's own motion."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,14 @@ FLAT = 1e-7  # a direction this much thinner than the widest is one that the pat
 CENTRE_SHARE = 10.0  # weight of a patch's own vertex against all its neighbours together: ten heads of the second set
 COLUMNS = 4  # solved at a time: more wake threads that cost more than they do (80 at once took ten times as long)
 REACH = 2.0  # neighbours count by distance to the power of minus this
+NEAR = 0.05  # of a patch's mean distance: what is nearer counts no more, else a held pose would cut itself off
+COTANGENTS = (1e-3, 10.0)  # half of them, of a triangle's angles
+CHUNK_ENTRIES = 1 << 20  # of patch matrices that are in memory at a time
+Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may raise, to stop
+
+
+def silent(_: float) -> None:
+    """Tell nobody."""
 
 
 def adjacency(triangles: npt.NDArray[np.integer], vertices: int) -> sp.csr_array:
@@ -78,7 +86,8 @@ def _weighted(pattern: sp.csr_array, points: Array) -> sp.csr_array:
     away = np.linalg.norm(points[row] - points[pattern.indices], axis=1)
     nearest = np.full(count, np.inf)
     np.minimum.at(nearest, row, np.where(away > 0, away, np.inf))
-    closest = np.where(np.isfinite(nearest), nearest, 1.0)[row]
+    typical = np.bincount(row, away, minlength=count) / np.maximum(np.diff(pattern.indptr) - 1, 1)
+    closest = np.where(np.isfinite(nearest), np.maximum(nearest, NEAR * typical), 1.0)[row]
     falloff = np.where(own, 0.0, (closest / np.maximum(away, closest)) ** REACH)
     total = np.maximum(np.bincount(row, falloff, minlength=count), 1e-12)
     weights = np.where(own, CENTRE_SHARE * total[row], falloff)
@@ -86,7 +95,12 @@ def _weighted(pattern: sp.csr_array, points: Array) -> sp.csr_array:
 
 
 def alignment(
-    points: Array, neighbourhoods: sp.csr_array, *, dimension: int = 3, stiffness: float = 0.0
+    points: Array,
+    neighbourhoods: sp.csr_array,
+    *,
+    dimension: int = 3,
+    stiffness: float = 0.0,
+    tell: Tell = silent,
 ) -> sp.csc_array:
     """Return B of ZLL17 equation 15: what it costs a data set to leave the local structure of `points`.
 
@@ -100,23 +114,29 @@ def alignment(
     points : (n, D) data points
     neighbourhoods : (n, n) weights; row i holds the members of patch i
     dimension : of the tangent space; directions that a patch does not have are left out
+    tell : is told the share that is done
     """
-    rows, columns, values = zip(*_scattered(points, neighbourhoods, dimension, stiffness), strict=True)
+    rows, columns, values = zip(*_scattered(points, neighbourhoods, dimension, stiffness, tell), strict=True)
     places = (np.concatenate(rows), np.concatenate(columns))
     count = len(points)
     return sp.coo_array((np.concatenate(values), places), shape=(count, count)).tocsc()
 
 
 def _scattered(
-    points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float
+    points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float, tell: Tell
 ) -> Iterator[tuple[Indices, Indices, Array]]:
-    """Yield rows, columns and values of the patches' matrices, patches of one size at a time."""
+    """Yield rows, columns and values of the patches' matrices, some patches of one size at a time."""
     sizes = np.diff(neighbourhoods.indptr)
+    done = 0
     for size in np.unique(sizes[sizes > 0]):
-        entries = neighbourhoods.indptr[np.flatnonzero(sizes == size)][:, None] + np.arange(size)
-        members = neighbourhoods.indices[entries].astype(np.int64)
-        local = _patch_matrices(points[members], neighbourhoods.data[entries], dimension, stiffness)
-        yield np.repeat(members, size, axis=1).ravel(), np.tile(members, (1, size)).ravel(), local.ravel()
+        alike = np.flatnonzero(sizes == size)
+        for patches in np.array_split(alike, -(-len(alike) * int(size) ** 2 // CHUNK_ENTRIES)):
+            tell(done / len(sizes))
+            done += len(patches)
+            entries = neighbourhoods.indptr[patches][:, None] + np.arange(size)
+            members = neighbourhoods.indices[entries].astype(np.int64)
+            local = _patch_matrices(points[members], neighbourhoods.data[entries], dimension, stiffness)
+            yield np.repeat(members, size, axis=1).ravel(), np.tile(members, (1, size)).ravel(), local.ravel()
 
 
 def _patch_matrices(members: Array, weights: Array, dimension: int, stiffness: float) -> Array:
@@ -133,6 +153,25 @@ def _patch_matrices(members: Array, weights: Array, dimension: int, stiffness: f
     constant = root / np.linalg.norm(root, axis=1, keepdims=True)
     kept = np.eye(root.shape[1]) - constant[:, :, None] * constant[:, None, :] - tangent @ tangent.transpose(0, 2, 1)
     return np.asarray(root[:, :, None] * kept * root[:, None, :])
+
+
+def cotangent_laplacian(rest: Array, triangles: npt.NDArray[np.integer]) -> sp.csr_array:
+    """Return the cotangent Laplacian, (n, n), whose rows are a mesh's differential coordinates (Sorkine 2004).
+
+    Obtuse angles count a little instead of pushing away, slivers no more than an angle of three degrees.
+    """
+    corner = rest[triangles]
+    rows, columns, values = [], [], []
+    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        u, v = corner[:, b] - corner[:, a], corner[:, c] - corner[:, a]
+        area = np.linalg.norm(np.cross(u, v), axis=1)
+        weight = np.clip(0.5 * (u * v).sum(axis=1) / np.maximum(area, 1e-300), *COTANGENTS)
+        rows += [triangles[:, b], triangles[:, c]]
+        columns += [triangles[:, c], triangles[:, b]]
+        values += [weight, weight]
+    places = (np.concatenate(rows), np.concatenate(columns))
+    joined = sp.coo_array((np.concatenate(values), places), shape=2 * (len(rest),)).tocsr()
+    return sp.csr_array(sp.diags_array(np.asarray(joined.sum(axis=1)).ravel()) - joined)
 
 
 class LabelSolver:
@@ -179,6 +218,19 @@ class LabelSolver:
     def influence(self) -> Array:
         """Return how far each label moves each data point, (n, m): all solves to come in one matrix product."""
         return self.solve(np.eye(len(self._labelled)))
+
+    def uncertainty(self) -> Array:
+        """Return how loosely the labels hold each data point, (n,): the root of the diagonal of ``(B + beta S)^-1``.
+
+        Were the energy a likelihood, this would be each point's standard deviation up to a common factor.
+        """
+        spread = np.empty(self._count)
+        for start in range(0, self._count, COLUMNS):
+            columns = np.arange(start, min(start + COLUMNS, self._count))
+            asked = np.zeros((self._count, len(columns)))
+            asked[columns, columns - start] = 1.0
+            spread[columns] = self._factor.solve(asked)[columns, columns - start]
+        return np.sqrt(np.maximum(spread, 0.0))
 
 
 def _undetermined() -> EditError:

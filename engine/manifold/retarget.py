@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,10 +10,12 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from engine.errors import EditError
-from engine.manifold.patches import Indices, LabelSolver, alignment, similar
-from engine.take import Array, Take
+from engine.manifold.patches import Indices, LabelSolver, Tell, alignment, silent, similar
+from engine.pose import Pose, filled
+from engine.take import SHAPES, Array, Take
 
 COORDINATES = 40  # principal coordinates that tell frames apart; the rest is noise, and slow to search
+GAIN_RIDGE = 0.3  # how far a gain is doubted, in labels of typical size: chosen on the validation takes
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,7 @@ class Retargeter:
     source : (frames, D) what the source does, such as feature points in mm
     base : (frames, q) the target as it would be with no labels
     labelled : (m,) frames
+    tell : is told the share that is done, 0..1; it may raise, to stop
 
     Raises
     ------
@@ -57,6 +60,7 @@ class Retargeter:
         base: Array,
         labelled: Indices,
         settings: Settings = Settings(),
+        tell: Tell = silent,
     ) -> None:
         self._base = np.asarray(base, np.float64)
         self._labelled = np.asarray(labelled, np.int64)
@@ -68,6 +72,7 @@ class Retargeter:
             similar(points[self._solved], size=settings.neighbours),
             dimension=settings.dimension,
             stiffness=settings.stiffness,
+            tell=tell,
         )
         place = np.searchsorted(self._solved, self._labelled)
         self._solver = LabelSolver(energy, place, beta=settings.beta)
@@ -87,6 +92,12 @@ class Retargeter:
         if len(others):
             result[others] += _by_patch(self._points, others, self._solved, known, self._settings)
         return result
+
+    def uncertainty(self) -> Array:
+        """Return how loosely the labels hold each frame, (frames,); a frame that was not solved has its nearest one's."""
+        known = self._solver.uncertainty()
+        nearest = cKDTree(self._points[self._solved]).query(self._points)[1]
+        return np.asarray(known[nearest], np.float64)
 
 
 def coordinates(source: Array) -> Array:
@@ -124,6 +135,25 @@ def suggest_frames(source: Array, count: int, *, labelled: Sequence[int] = (), a
     return suggested
 
 
+def scaled_to(base: Array, rest: Array, labelled: Indices, labels: Array) -> Array:
+    """Return the base, (frames, n, d), each point with its own linear gain that brings it nearer to its labels.
+
+    The gain is a ridge regression through rest, of what labels ask beyond the base on how far the base is from rest. A
+    few labels then tell about frames unlike any of them, where the manifold alone would go back to the base.
+
+    Parameters
+    ----------
+    rest : (n, d) the base at rest
+    labelled, labels : (m,) frames and what is asked of them, (m, n, d)
+    """
+    away = base - rest
+    known, missing = away[labelled], labels - base[labelled]
+    doubt = GAIN_RIDGE * np.maximum((away**2).sum(axis=2).mean(axis=0), 1e-12)
+    gram = np.einsum("fnd,fne->nde", known, known) + doubt[:, None, None] * np.eye(base.shape[2])
+    gain = np.linalg.solve(gram, np.einsum("fnd,fne->nde", known, missing))
+    return np.asarray(base + np.einsum("fnd,nde->fne", away, gain))
+
+
 def retarget_points(
     source: Array, source_rest: Array, target_rest: Array, labels: dict[int, Array], settings: Settings | None = None
 ) -> Array:
@@ -140,27 +170,88 @@ def retarget_points(
     )
     base = target_rest + size * (source - source_rest)
     frames = np.array(sorted(labels), np.int64)
-    flat = base.reshape(len(base), -1)
-    retargeter = Retargeter(source.reshape(len(source), -1), flat, frames, settings or Settings())
-    return retargeter.solve(np.stack([labels[int(f)].ravel() for f in frames])).reshape(base.shape)
+    asked = np.array([labels[int(frame)] for frame in frames]).reshape(-1, *target_rest.shape)
+    moved = (source - source_rest).reshape(len(source), -1)
+    made, _ = _between_rest_and_labels(moved, base, target_rest, frames=frames, labels=asked, settings=settings)
+    return made
 
 
-def retarget_weights(take: Take, labels: dict[int, Array], settings: Settings | None = None) -> Take:
-    """Return the take as a target with shapes plays it, given the target's weights, (52,), at a few frames."""
+@dataclass(frozen=True, eq=False)
+class Labelled:
+    """A take made from labels, and how loosely they hold each of its frames, (frames,): the loosest wants the next label."""
+
+    take: Take
+    uncertainty: Array
+
+
+def from_labels(
+    take: Take,
+    labels: Mapping[int, Pose],
+    settings: Settings | None = None,
+    *,
+    source: Array | None = None,
+    tell: Tell = silent,
+) -> Labelled:
+    """Return the take as a target with shapes plays it, given the target's weights at a few frames.
+
+    Parameters
+    ----------
+    take : the target's weights as they would be with no labels
+    labels : by frame; a shape that is not named, or NaN, stays as the take has it there
+    source : (frames, D) what tells frames apart, zero where the source is at rest; the take's weights without it
+    tell : is told the share that is done, 0..1; it may raise, to stop
+    """
     frames = np.array(sorted(labels), np.int64)
-    if not len(frames):
-        raise EditError("There is no labelled frame.", "Pose the target at one frame or more.")
-    retargeter = Retargeter(take.weights, take.weights, frames, settings or Settings())
-    asked = np.stack([np.asarray(labels[int(frame)], np.float64) for frame in frames])
+    _require_within(frames, len(take))
+    poses = np.array([filled(labels[int(frame)]) for frame in frames])
+    asked = np.where(np.isnan(poses), take.weights[frames], poses)[..., None]
+    points, rest = take.weights if source is None else source, np.zeros((len(SHAPES), 1))
+    made, uncertainty = _between_rest_and_labels(
+        points, take.weights[..., None], rest, frames=frames, labels=asked, settings=settings, tell=tell
+    )
     low, high = np.minimum(take.weights.min(axis=0), 0.0), np.maximum(take.weights.max(axis=0), 1.0)
-    return take.with_weights(np.clip(retargeter.solve(asked), low, high))
+    return Labelled(take.with_weights(np.clip(made[..., 0], low, high)), uncertainty)
+
+
+def retarget_weights(
+    take: Take, labels: Mapping[int, Pose], settings: Settings | None = None, *, source: Array | None = None
+) -> Take:
+    """Return what `from_labels` makes, the take alone."""
+    return from_labels(take, labels, settings, source=source).take
+
+
+def _between_rest_and_labels(
+    source: Array,
+    base: Array,
+    rest: Array,
+    *,
+    frames: Indices,
+    labels: Array,
+    settings: Settings | None,
+    tell: Tell = silent,
+) -> tuple[Array, Array]:
+    """Return the target, (frames, n, d), and how loosely each frame is held, of a source that is zero at rest.
+
+    Rest is one more data point, and one more label: where the source is at rest, so is the target.
+    """
+    _require_within(frames, len(base))
+    guess = np.concatenate([scaled_to(base, rest, frames, labels), rest[None]]).reshape(len(base) + 1, -1)
+    points = np.vstack([source.reshape(len(source), -1), np.zeros((1, source[0].size))])
+    retargeter = Retargeter(points, guess, np.append(frames, len(base)), settings or Settings(), tell)
+    made = retargeter.solve(np.vstack([labels.reshape(len(frames), -1), rest.reshape(1, -1)]))
+    return made[:-1].reshape(base.shape), retargeter.uncertainty()[:-1]
+
+
+def _require_within(labelled: Indices, frames: int) -> None:
+    if not len(labelled):
+        raise EditError("There is no labelled frame.", "Pose the target at one frame or more.")
+    outside = labelled[(labelled < 0) | (labelled >= frames)]
+    if len(outside):
+        raise EditError(f"Frame {outside[0]} has a label; the source has {frames} frames.")
 
 
 def _require_usable(source: Array, base: Array, labelled: Indices) -> None:
-    if not len(labelled):
-        raise EditError("There is no labelled frame.", "Pose the target at one frame or more.")
-    if labelled.min() < 0 or labelled.max() >= len(source):
-        raise EditError(f"Frame {labelled.max()} has a label; the source has {len(source)} frames.")
+    _require_within(labelled, len(source))
     if (np.diff(np.sort(labelled)) == 0).any():
         raise EditError("A frame is labelled twice.")
     if len(base) != len(source) or not (np.isfinite(source).all() and np.isfinite(base).all()):

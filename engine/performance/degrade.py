@@ -12,6 +12,7 @@ import numpy as np
 from scipy.linalg import solve_banded
 
 from engine.performance.augment import LOWER, MIRROR
+from engine.quality import leaps, repeats
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take, runs
 
 LIDS = [SHAPE_INDEX[f"eyeBlink{side}"] for side in ("Left", "Right")]
@@ -192,20 +193,11 @@ def measure(take: Take) -> dict[str, float]:
     whole: Mask = np.all(kept[2:-2][: count * window].reshape(count, 1, window), axis=2)
     rest: Mask = whole & (height > 0.02) & (height < 0.1)
     active: Mask = whole & (height > 0.3)
-    still: Mask = kept[1:] & kept[:-1]
-    still &= np.all(np.diff(take.weights, axis=0) == 0, axis=1)
     return {
         "jitter_rest": float(np.percentile(level[rest], 90)) if rest.any() else 0.0,
         "jitter_active": float(np.percentile((level / np.maximum(height, 1e-6))[active], 90)) if active.any() else 0.0,
-        "spikes_per_s": _count_spikes(take.weights, kept) / take.duration_s,
-        "frozen_per_s": len(runs(still)) / take.duration_s,
+        "spikes_per_s": int((leaps(take.weights, kept) > 0).sum()) / take.duration_s,
+        "frozen_per_s": len(runs(repeats(take.weights, kept))) / take.duration_s,
         "lost_per_s": len(runs(take.lost)) / take.duration_s,
         "lost_longest_s": max((stop - start for start, stop in runs(take.lost)), default=0) / take.fps,
     }
-
-
-def _count_spikes(weights: Array, kept: Mask) -> int:
-    """Count frames on which some shape leaps by 0.15 and returns."""
-    leap = np.abs(weights[1:-1] - (weights[2:] + weights[:-2]) / 2) > 0.15
-    returns = np.abs(weights[2:] - weights[:-2]) < 0.05
-    return int(((leap & returns).any(axis=1) & kept[1:-1] & kept[2:] & kept[:-2]).sum())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from engine.errors import FormatError
@@ -28,10 +28,15 @@ class Found:
     @property
     def sentence(self) -> str:
         """What the user should hear; empty when all is well."""
-        name = _name(self.media.path)
         if self.path is not None:
             return ""
+        name = name_of(self.media)
         return f"{name} is not the file it was." if self.changed is not None else f"{name} is missing."
+
+
+def name_of(media: Media) -> str:
+    """Return the name of a media file, without its folder."""
+    return _name(media.path) or "the file"
 
 
 def attach(path: Path, folder: Path, *, kind: str, offset_s: float = 0.0) -> Media:
@@ -41,9 +46,13 @@ def attach(path: Path, folder: Path, *, kind: str, offset_s: float = 0.0) -> Med
     except OSError as error:
         reason = (error.strerror or "unknown reason").lower()
         raise FormatError(f"{path.name} could not be read: {reason}.") from error
-    inside = path.resolve().is_relative_to(folder.resolve())
-    place = path.resolve().relative_to(folder.resolve()).as_posix() if inside else path.name
-    return Media(kind, place, digest, offset_s)
+    return placed(Media(kind, path.name, digest, offset_s), path, folder)
+
+
+def placed(media: Media, path: Path, folder: Path) -> Media:
+    """Return the record of a media file that is at a path, for a project in a folder."""
+    whole, base = path.resolve(), folder.resolve()
+    return replace(media, path=whole.relative_to(base).as_posix() if whole.is_relative_to(base) else path.name)
 
 
 def find(media: Media, folder: Path, elsewhere: Iterable[Path] = ()) -> Found:

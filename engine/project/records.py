@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime
 from typing import Any
 
@@ -13,6 +13,7 @@ from engine.controls import CONTROLS
 from engine.take import SHAPES, Array, Take
 
 MARK = "mark"  # kind of an edit whose inputs are marks before and after
+VISEMES = "visemes"  # kind of an edit whose inputs are a step on the visemes lane
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +101,15 @@ class Marks:
     media: tuple[Media, ...] = ()
     verdict: str = ""
 
+    def medium(self, kind: str) -> Media | None:
+        """Return the sound (audio) or the reference video (video), None where there is none."""
+        return next((media for media in self.media if media.kind == kind), None)
+
+    def with_medium(self, kind: str, media: Media | None) -> Marks:
+        """Return the same marks with another sound or video, or without."""
+        others = tuple(other for other in self.media if other.kind != kind)
+        return replace(self, media=(*others, media) if media is not None else others)
+
 
 def marks_of(stored: Mapping[str, Any]) -> Marks:
     """Return marks from what `dataclasses.asdict` made of them; raises `KeyError` or `TypeError` for anything else."""
@@ -144,36 +154,3 @@ class Summary:
     fps: float
     edits: int
     changed: datetime
-
-
-@dataclass(frozen=True, eq=False)
-class Replayed:
-    """What edits come to: the take in effect, the asked values, and the rows that each edit replaced.
-
-    Attributes
-    ----------
-    take : with the edits up to the position
-    asked : (frames, 8) mm, NaN where nothing was asked
-    before : of each edit the (frames, 52) weights and (frames, 8) asked values that it found
-    """
-
-    take: Take
-    asked: Array
-    before: tuple[tuple[Array, Array], ...]
-
-
-def replay(contents: Contents) -> Replayed:
-    """Return the state at the project's position, bit for bit as it was left."""
-    weights = contents.original.weights.copy()
-    asked = np.full((len(weights), len(CONTROLS)), np.nan)
-    before: list[tuple[Array, Array]] = []
-    shown = (weights.copy(), asked.copy())
-    for index, edit in enumerate(contents.edits):
-        rows = slice(edit.start, edit.stop)
-        before.append((weights[rows].copy(), asked[rows].copy()))
-        weights[rows], asked[rows] = edit.weights, edit.asked
-        if index < contents.position:
-            shown[0][rows], shown[1][rows] = edit.weights, edit.asked
-    for array in shown:
-        array.flags.writeable = False
-    return Replayed(contents.original.with_weights(shown[0]), shown[1], tuple(before))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -15,6 +15,7 @@ from engine.errors import EngineError
 from engine.formats.livelink import DAY_S, MAX_COLUMNS, Origin
 from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
 from engine.project.records import MARK, Contents, Edit, Marks, Media, Note, Pin, Span, Summary, marks_of
+from engine.project.replaying import said
 from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
 MAX_FRAMES = 1_000_000  # over four hours at 60 fps
@@ -25,10 +26,15 @@ JSON_BYTES = 32  # that a character of JSON may grow to when it is read
 ROTATIONS = 9
 
 
-def write_contents(database: sqlite3.Connection, contents: Contents) -> None:
-    """Fill empty tables."""
+def write_contents(database: sqlite3.Connection, contents: Contents, report: Callable[[float], None]) -> None:
+    """Fill empty tables; `report` hears the share of the frames that are written."""
+    takes = [contents.original.weights, *(edit.weights for edit in contents.edits)]
+    written = np.cumsum([len(weights) for weights in takes])
+    report(0.0)
     _write_take(database, contents.original)
-    write_edits(database, 0, contents.edits)
+    for place, edit in enumerate(contents.edits):
+        report(written[place] / written[-1])
+        write_edits(database, place, (edit,))
     write_marks(database, contents.marks)
     write_state(database, contents)
 
@@ -38,6 +44,7 @@ def read_contents(database: sqlite3.Connection, budget: Budget) -> Contents:
     try:
         take = _read_take(database, budget)
         edits = tuple(_read_edits(database, len(take), budget))
+        _require_said(edits)
         position, verdict = one(database, "SELECT position, verdict FROM state")
         _require(0 <= position <= len(edits), "its place in the undo history is not there")
         return Contents(take, edits, position, _read_marks(database, verdict, len(take), budget))
@@ -64,8 +71,7 @@ def write_edits(database: sqlite3.Connection, first: int, edits: Iterable[Edit])
     for place, edit in enumerate(edits, first):
         inputs = json.dumps(dict(edit.inputs), default=_plain)
         blobs = pack(edit.weights), names, pack(edit.asked)
-        row = (place, edit.kind, edit.title, inputs, edit.start, len(edit.weights), *blobs)
-        database.execute("INSERT INTO edits VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", row)
+        _insert(database, "edits", (place, edit.kind, edit.title, inputs, edit.start, len(edit.weights), *blobs))
 
 
 def write_marks(database: sqlite3.Connection, marks: Marks) -> None:
@@ -91,18 +97,27 @@ def write_state(database: sqlite3.Connection, contents: Contents) -> None:
 
 def _write_take(database: sqlite3.Connection, take: Take) -> None:
     blobs = pack(take.weights), pack(take.lost), pack(take.rotations)
-    row = (take.name, take.fps, take.start_s, len(take), *blobs)
-    database.execute("INSERT INTO take VALUES (1, ?, ?, ?, ?, ?, ?, ?)", row)
+    _insert(database, "take", (1, take.name, take.fps, take.start_s, len(take), *blobs))
     origin = take.origin
     if isinstance(origin, Origin):
         timecodes = b"\n".join(origin.timecodes)
         lines = len(origin.timecodes), len(timecodes), pack(np.frombuffer(timecodes, "u1"))
         arrays = pack(origin.rows), pack(origin.values), pack(origin.lost)
         how = origin.decimals, origin.newline, int(origin.swapped)
-        database.execute(
-            "INSERT INTO origin VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-            (json.dumps(origin.header), *lines, *arrays, *how),
-        )
+        _insert(database, "origin", (1, json.dumps(origin.header), *lines, *arrays, *how))
+
+
+def _insert(database: sqlite3.Connection, table: str, row: Sequence[object]) -> None:
+    """Add a row with its number first; room is made for what comes in pieces, which is then filled piece by piece."""
+    marks = ["zeroblob(?)" if isinstance(value, list) else "?" for value in row]
+    values = [sum(map(len, value)) if isinstance(value, list) else value for value in row]
+    database.execute(f"INSERT INTO {table} VALUES ({', '.join(marks)})", values)
+    columns = [column for column, *_ in database.execute(f"SELECT * FROM {table} LIMIT 0").description]
+    for column, value in zip(columns, row, strict=True):
+        if isinstance(value, list):
+            with database.blobopen(table, column, row[0]) as blob:  # type: ignore[arg-type]
+                for piece in value:
+                    blob.write(piece)
 
 
 def _read_take(database: sqlite3.Connection, budget: Budget) -> Take:
@@ -208,6 +223,14 @@ def _require_sound(marks: Marks, length: int) -> None:
     texts += [text for note in marks.notes for text in (note.author, note.time, note.text)]
     texts += [text for entry in marks.media for text in (entry.kind, entry.path, entry.sha256)]
     _require(all(isinstance(text, str) for text in (*texts, marks.verdict)), "a mark is not what it should be")
+
+
+def _require_said(edits: tuple[Edit, ...]) -> None:
+    """Check that each step on the visemes fits the lane that it finds."""
+    try:
+        said(edits)
+    except (KeyError, TypeError, ValueError) as error:
+        raise DamagedError("an edit does not say what it did to the visemes") from error
 
 
 def _is_pose(pose: object) -> bool:

@@ -6,7 +6,7 @@ import os
 import shutil
 import sqlite3
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
@@ -19,6 +19,9 @@ from engine.project.records import Contents, Summary
 ENDING = ".retake"
 MAX_BLOB_BYTES = 2**29
 BESIDE = ("-wal", "-shm", "-journal")  # what SQLite lays beside a database
+STEP_PAGES = 512  # that are copied at a time, 2 MiB
+
+Report = Callable[[float], None]  # the share that is done, 0 to 1; an `EngineError` raised by it stops the work
 
 
 class InUseError(EngineError):
@@ -88,16 +91,26 @@ class Project:
             rows.write_state(database, contents)
         self._contents = contents
 
-    def save_as(self, path: Path) -> Project:
-        """Copy the file to a path and open the copy; what was at the path stays there, whole, until the copy is."""
+    def save_as(self, path: Path, report: Report = lambda _: None) -> Project:
+        """Copy the file to a path and open the copy; what was at the path stays there, whole, until the copy is.
+
+        `report` may `put` further contents: SQLite brings them to the part that is copied already, until all is.
+        """
         database = self._writable()
         if path.exists() and path.samefile(self.path):
             return self
         _settle(path)
         with sentences(path.name), replacement(path) as temporary, closing(_scrap(temporary)) as copy:
-            database.backup(copy)
+            copied = self._contents
+
+            def step(_: int, left: int, pages: int) -> None:
+                nonlocal copied
+                copied = self._contents  # what is put after the last step is in the old file alone
+                report(1 - left / max(1, pages))
+
+            database.backup(copy, pages=STEP_PAGES, progress=step)
             copy.close()
-        return _attach(path, self._contents)
+        return _attach(path, copied)
 
     def close(self) -> None:
         """Let go of the file."""
@@ -126,15 +139,16 @@ class Project:
                 raise
 
 
-def create(path: Path, contents: Contents) -> Project:
+def create(path: Path, contents: Contents, report: Report = lambda _: None) -> Project:
     """Make a project file and open it; a file that is there already is replaced whole or left as it was."""
     _settle(path)
     with sentences(path.name), replacement(path) as temporary, closing(_scrap(temporary)) as database:
         database.execute("BEGIN")
         schema.build(database)
-        rows.write_contents(database, contents)
+        rows.write_contents(database, contents, report)
         database.execute("COMMIT")
         database.close()
+        report(1.0)
     return _attach(path, contents)
 
 

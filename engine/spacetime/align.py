@@ -38,10 +38,15 @@ class HeadMotion:
         return np.asarray(positions @ self.rotations.transpose(0, 2, 1) + self.translations[:, None])
 
     def angles(self) -> Array:
-        """Return yaw, pitch and roll, (frames, 3) radians: turns about Y, then X, then Z of the turned head."""
+        """Return head yaw, pitch and roll as Live Link Face has them, (frames, 3) radians.
+
+        Turns of the head about its own up, right and front in this order: yaw is positive to the character's right, pitch
+        downwards, roll towards the left shoulder. (The sign is told by its eye columns, which go with eyeLookIn and
+        eyeLookOut; Unreal's ARKit plug-in treats head and eyes alike.)
+        """
         r = self.rotations
         pitch = -np.arcsin(np.clip(r[:, 1, 2], -1, 1))
-        return np.stack([np.arctan2(r[:, 0, 2], r[:, 2, 2]), pitch, np.arctan2(r[:, 1, 0], r[:, 1, 1])], axis=1)
+        return np.stack([-np.arctan2(r[:, 0, 2], r[:, 2, 2]), pitch, -np.arctan2(r[:, 1, 0], r[:, 1, 1])], axis=1)
 
 
 def procrustes(positions: Array, neutral: Array, weights: Array | None = None) -> HeadMotion:

@@ -16,6 +16,11 @@ ROUNDS = 80
 NEWTON_ROUNDS = 200
 TOLERANCE = 1e-9  # of a weight: how far beyond a bound, or how far the gradient may still ask to go
 SUFFICIENT = 1e-4  # share of the promised decrease that a step must deliver
+Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may raise, to stop
+
+
+def silent(_: float) -> None:
+    """Tell nobody."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +40,19 @@ class BoundedSolver:
     held : (f, m) bool, weights that are given and not bounded
     bounds : of all others
     factorise : returns the factor of H over free weights, (f, m) bool
+    tell : called each round; the weights that change sides become fewer, by about as large a share each time
     """
 
-    def __init__(self, system: System, held: Mask, bounds: Bounds, factorise: Callable[[Mask], BlockCholesky]) -> None:
+    def __init__(
+        self,
+        system: System,
+        held: Mask,
+        bounds: Bounds,
+        factorise: Callable[[Mask], BlockCholesky],
+        tell: Tell = silent,
+    ) -> None:
         self._system, self._held, self._bounds, self._factorise = system, held, bounds, factorise
+        self._tell = tell
 
     def solve(self, start: Array, right: Array) -> Array:
         """Return the minimiser, (f, m), from the unbounded one and a right side, (f, m)."""
@@ -47,6 +61,7 @@ class BoundedSolver:
             return start
         side = np.where(self._held, 0, (start >= high).astype(np.int8) - (start <= low))
         rng = np.random.default_rng(0)
+        first = most = 0.0
         for turn in range(ROUNDS):
             free = ~self._held & (side == 0)
             given = np.where(self._held, start, np.where(side > 0, high, low))
@@ -57,6 +72,10 @@ class BoundedSolver:
             changes = wanted != side
             if not changes.any():
                 return weights
+            left = float(np.log1p(changes.sum()))
+            first = first or left
+            most = max(most, 1 - left / first)
+            self._tell(most)
             side = np.where(changes & (rng.random(side.shape) < 0.5), wanted, side) if turn >= WHOLE_ROUNDS else wanted
         return self._newton(np.where(self._held, start, np.clip(weights, low, high)), right)
 
@@ -76,6 +95,7 @@ class BoundedSolver:
         low, high = self._bounds.low, self._bounds.high
         scale = np.diag(self._system.velocity_gram()) + np.diag(self._system.constant_gram())
         for _ in range(NEWTON_ROUNDS):
+            self._tell(1.0)
             slope = np.where(self._held, 0.0, self._system.apply(weights) - right)
             wanted = np.clip(weights - slope / scale, low, high) - weights
             if np.abs(np.where(self._held, 0.0, wanted)).max() < TOLERANCE:

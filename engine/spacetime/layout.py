@@ -12,10 +12,11 @@ from scipy.sparse.csgraph import connected_components
 
 from engine.character import Character
 from engine.errors import EditError
-from engine.take import Array
+from engine.take import SHAPE_INDEX, Array
 
 REACH = 0.15  # of half the distance of the eyes: how far beside the wanted place a vertex may be in front of it
 DEPTH = 0.2  # of the same: how far behind the foremost vertex the skin still counts as in front
+JAW_SLACK = 0.2  # of the jaw's longest way: how far a marker may move beyond the two landmarks that it lies between
 
 
 @dataclass(frozen=True)
@@ -137,7 +138,18 @@ def _vertex(place: Place, character: Character, points: Array, skin: npt.NDArray
     end = points[character.landmarks[place.end]] if place.end else start
     unit = abs(points[character.landmarks["lid_upper_left"]] - points[character.landmarks["lid_upper_right"]])[0] / 2
     wanted = start + place.share * (end - start) + unit * np.array([place.aside, place.up, 0.0])
-    return _in_front(wanted, points, skin, unit)
+    return _in_front(wanted, points, _with_jaw(place, character, skin), unit)
+
+
+def _with_jaw(place: Place, character: Character, skin: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Return the skin that follows the jaw as a place between two landmarks does: no lower lip for the upper one's."""
+    if not place.end:
+        return skin
+    way = np.linalg.norm(character.deltas[SHAPE_INDEX["jawOpen"]], axis=1)
+    ends = way[[character.landmarks[place.start], character.landmarks[place.end]]]
+    slack = JAW_SLACK * way.max()
+    follows = (way[skin] >= ends.min() - slack) & (way[skin] <= ends.max() + slack)
+    return np.asarray(skin[follows], np.int64)
 
 
 def _in_front(wanted: Array, points: Array, skin: npt.NDArray[np.int64], unit: float) -> int:

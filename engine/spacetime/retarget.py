@@ -11,16 +11,18 @@ from engine.character import Character
 from engine.errors import EditError
 from engine.spacetime import prior as priors
 from engine.spacetime.align import Warp
-from engine.spacetime.bounded import Bounds
+from engine.spacetime.bounded import Bounds, Tell, silent
 from engine.spacetime.closure import GAPS, Gaps, closedness
 from engine.spacetime.layout import Layout, standard
 from engine.spacetime.prior import Prior
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.source import Source, bridge
 from engine.spacetime.system import Position, System
-from engine.take import MODEL_FPS, SHAPE_INDEX, SHAPES, Array, Take
+from engine.take import MODEL_FPS, SHAPE_INDEX, SHAPES, Array, Mask, Take
 
 TIGHTER = 0.8  # of the source's gap: what nearly closes errs on the closed side
+JAW_ROUNDS = 8
+OVER = 1e-6  # of a weight
 UNSEEN_MM = 0.3  # a shape that moves every marker less than this is not told by markers
 
 
@@ -39,7 +41,7 @@ class Matching:
 
     alpha: float = 0.005
     beta: float = 0.1
-    closure: float = 30.0
+    closure: float = 10.0
     bounds: Bounds | None = field(default_factory=Bounds)
 
 
@@ -134,15 +136,38 @@ def _jaw_and_close(pair: Correspondence) -> tuple[npt.NDArray[np.int64], npt.NDA
     return columns[0][:both], columns[1][:both]
 
 
-def match(pair: Correspondence, fps: float, matching: Matching) -> Array:
-    """Return weights, (frames, m), by movement matching."""
-    weights = without_jaw(pair, _match(with_jaw(pair), fps, matching))
-    if matching.bounds is not None:
-        weights = np.clip(weights, matching.bounds.low, matching.bounds.high)  # the jaw, where both parts are large
-    return weights
+def match(pair: Correspondence, fps: float, matching: Matching, tell: Tell = silent) -> Array:
+    """Return weights, (frames, m), by movement matching; `tell` is told the share done, and may raise to stop.
+
+    The bounds hold for the jaw's two parts, so their sum may go beyond. Where it does, it is held at the bound and
+    everything else is solved for again, until it does so nowhere.
+    """
+    joined = with_jaw(pair)
+    weights = _match(joined, fps, matching, tell)
+    jaw, close = _jaw_and_close(pair)
+    if matching.bounds is None or not len(jaw):
+        return without_jaw(pair, weights)
+    high, held, values = matching.bounds.high, np.zeros(weights.shape, bool), np.zeros_like(weights)
+    for _ in range(JAW_ROUNDS):
+        beyond = np.flatnonzero(weights[:, jaw[0]] + weights[:, close[0]] > high + OVER)
+        if not len(beyond):
+            break
+        both = np.ix_(beyond, [jaw[0], close[0]])
+        shut = np.minimum(weights[beyond, close[0]], high)
+        held[both], values[both] = True, np.stack([high - shut, shut], axis=1)
+        weights = _match(joined, fps, matching, lambda _: tell(1.0), held=held, values=values)
+    return np.clip(without_jaw(pair, weights), matching.bounds.low, high)
 
 
-def _match(pair: Correspondence, fps: float, matching: Matching) -> Array:
+def _match(
+    pair: Correspondence,
+    fps: float,
+    matching: Matching,
+    tell: Tell,
+    *,
+    held: Mask | None = None,
+    values: Array | None = None,
+) -> Array:
     per_frame = (MODEL_FPS / fps) ** 2  # a velocity per frame is smaller at a higher rate; what holds places follows it
     prior, frames = pair.prior, len(pair.motion)
     beta = matching.beta * per_frame
@@ -155,11 +180,17 @@ def _match(pair: Correspondence, fps: float, matching: Matching) -> Array:
         weights = np.hstack([np.broadcast_to(weights, (frames, len(weights))), closed])
     alpha = matching.alpha * per_frame * prior.scale(pair.basis)
     system = System(pair.basis, frames, prior, alpha, Position(rows, weights), pair.believed)
-    return MovementMatcher(system, bounds=matching.bounds).solve(pair.motion, places=places)
+    matcher = MovementMatcher(system, held, bounds=matching.bounds, tell=tell)
+    return matcher.solve(pair.motion, places=places, values=values)
 
 
 def retarget(
-    source: Source, character: Character, *, layout: Layout | None = None, matching: Matching | None = None
+    source: Source,
+    character: Character,
+    *,
+    layout: Layout | None = None,
+    matching: Matching | None = None,
+    tell: Tell = silent,
 ) -> Take:
     """Return the take that moves a character as the source moves.
 
@@ -169,11 +200,12 @@ def retarget(
     character : the target
     layout : which of its vertices carries which marker; None for the 54 standard ones
     matching : what is respected
+    tell : is told the share that is done, 0..1; it may raise, to stop
 
     What no marker tells of (gaze, tongue) is carried over by name; head rotation and lost frames are the source's.
     Raises `EditError` as `correspond` does.
     """
     pair = correspond(source, character, layout)
     weights = source.take.weights.copy()
-    weights[:, pair.shapes] = match(pair, source.take.fps, matching or Matching())
+    weights[:, pair.shapes] = match(pair, source.take.fps, matching or Matching(), tell)
     return replace(source.take, weights=weights, origin=None)

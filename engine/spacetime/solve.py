@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.errors import EditError
 from engine.spacetime.blocks import KEPT, BlockCholesky
-from engine.spacetime.bounded import BoundedSolver, Bounds
+from engine.spacetime.bounded import BoundedSolver, Bounds, Tell, silent
 from engine.spacetime.modes import Modes
 from engine.spacetime.system import System
 from engine.take import Array, Mask
@@ -24,14 +24,17 @@ class MovementMatcher:
     system : what is minimised
     held : (f, m) bool, pinned weights; None pins nothing
     bounds : range of the weights that are not pinned, or None
+    tell : is told how far a bounded solve is, 0..1; it may raise, to stop
 
     Raises
     ------
     EditError : where neither a pin, nor the prior, nor a held place says where the motion starts
     """
 
-    def __init__(self, system: System, held: Mask | None = None, *, bounds: Bounds | None = None) -> None:
-        self._system, self._bounds = system, bounds
+    def __init__(
+        self, system: System, held: Mask | None = None, *, bounds: Bounds | None = None, tell: Tell = silent
+    ) -> None:
+        self._system, self._bounds, self._tell, self._told = system, bounds, tell, 0.0
         self._remembered: dict[int, tuple[Array, Array]] = {}
         self._held = np.zeros((system.frames, system.count), bool) if held is None else held
         whole: Mask = np.asarray(self._held.all(axis=1))
@@ -44,11 +47,16 @@ class MovementMatcher:
 
     def _blocks(self, start: int, stop: int) -> tuple[Array, Array]:
         """Return the system's blocks, kept for the bounded solve of a take that is not long."""
+        self._tell(self._told)  # so that a long take, too, can be stopped within a second
         if self._bounds is None or self._system.frames > KEPT:
             return self._system.blocks(start, stop)
         if start not in self._remembered:
             self._remembered[start] = self._system.blocks(start, stop)
         return self._remembered[start]
+
+    def _pass_on(self, share: float) -> None:
+        self._told = share
+        self._tell(share)
 
     def solve(self, source: Array, *, places: Array | None = None, values: Array | None = None) -> Array:
         """Return weights, (f, m).
@@ -68,7 +76,9 @@ class MovementMatcher:
         weights = self._unbounded(right, given)
         if self._bounds is None:
             return weights
-        return BoundedSolver(self._system, self._held, self._bounds, self._factorise).solve(weights, right)
+        return BoundedSolver(self._system, self._held, self._bounds, self._factorise, self._pass_on).solve(
+            weights, right
+        )
 
     def _unbounded(self, right: Array, given: Array) -> Array:
         if self._modes is not None:

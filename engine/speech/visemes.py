@@ -82,6 +82,11 @@ def class_of(label: str) -> int:
     return INDEX[plain]
 
 
+def begun_at(cues: Sequence[Cue], offset_s: float) -> tuple[Cue, ...]:
+    """Return the cues of a file that begins at a time of the take."""
+    return tuple(Cue(cue.start_s + offset_s, cue.stop_s + offset_s, cue.label) for cue in cues)
+
+
 def classes_over(cues: Sequence[Cue], *, frames: int, fps: float) -> np.ndarray:
     """Return the class at each frame, (frames,) int, −1 where no cue lies; the later of two overlapping cues counts.
 

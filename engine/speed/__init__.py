@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 # Each is a module of this package with `measure() -> list[Speed]`.
-METHODS: tuple[str, ...] = ("takes", "drag", "spacetime", "clean", "manifold", "fill")
+METHODS: tuple[str, ...] = ("takes", "drag", "spacetime", "clean", "manifold", "fill", "quality")
 
 
 @dataclass(frozen=True)

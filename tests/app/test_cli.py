@@ -35,6 +35,16 @@ def test_edit_writes_a_take_with_the_lips_closed(tmp_path: Path, capsys: pytest.
     assert "wrote" in capsys.readouterr().out
 
 
+def test_edit_says_what_could_not_be_reached_and_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = [tmp_path / name for name in ("follow.csv", "keep.csv")]
+    arguments = ["edit", str(demo.BUNDLED), "--control", "lips_vertical", "--frames", "70:90", "--set"]
+    assert cli.run([*arguments, "150", "--exact", "-o", str(out[0])]) == 0
+    assert "of 150.0 asked: " in (told := capsys.readouterr().out) and "limit" in told
+    for path, option in zip(out, ("--follow", "--keep"), strict=True):
+        assert cli.run([*arguments, "12", option, "-o", str(path)]) == 0
+    assert np.abs(read_take(out[0]).weights - read_take(out[1]).weights).max() > 0.01
+
+
 def test_info_prints_one_json_object(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.run(["info", str(demo.BUNDLED), "--json"]) == 0
     shown = json.loads(capsys.readouterr().out)

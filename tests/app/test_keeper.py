@@ -60,6 +60,19 @@ def kept(qtbot: QtBot, keeper: Keeper, change: Callable[[], object]) -> None:
     assert (stored.edits, stored.position, stored.marks) == (now.edits, now.position, now.marks)
 
 
+def saved(qtbot: QtBot, keeper: Keeper, path: Path) -> None:
+    with qtbot.waitSignal(keeper.saved, timeout=10_000) as told:
+        keeper.save_as(path)
+    assert told.args == [path] and keeper.saving is None
+
+
+def refused(qtbot: QtBot, keeper: Keeper, path: Path) -> str:
+    with qtbot.waitSignal(keeper.failed, timeout=10_000) as told:
+        keeper.save_as(path)
+    assert keeper.saving is None and told.args[1]
+    return str(told.args[0])
+
+
 def alike(left: Session, right: Session) -> bool:
     for name in ("weights", "lost", "rotations"):
         np.testing.assert_array_equal(getattr(left.take, name), getattr(right.take, name))
@@ -150,7 +163,7 @@ def test_saving_moves_the_work_to_the_project_and_every_later_step_too(
     session = first._session
     kept(qtbot, first, lambda: push(session, 1))
     assert session.edited
-    first.save_as(path)
+    saved(qtbot, first, path)
     assert (first.path, session.path, session.edited) == (path, path, False)
     assert first.left_over() == [] and list((tmp_path / "data" / "unsaved").iterdir()) == []
     kept(qtbot, first, lambda: push(session, 2))
@@ -165,14 +178,13 @@ def test_saving_moves_the_work_to_the_project_and_every_later_step_too(
 
 def test_saving_before_any_edit_and_over_an_older_project(qtbot: QtBot, make: Made, tmp_path: Path) -> None:
     first, second, path = make(), make(), tmp_path / "a.retake"
-    first.save_as(path)
+    saved(qtbot, first, path)
     push(second._session, 1)
-    with pytest.raises(EngineError, match="open in another Retake"):
-        second.save_as(path)
+    assert refused(qtbot, second, path) == "a.retake is open in another Retake."
     assert second._session.edited and second.path is None
     first.close()
-    second.save_as(path)
-    second.save_as(path)
+    saved(qtbot, second, path)
+    saved(qtbot, second, path)
     second.close()
     assert len(Project.open(path).contents.edits) == 1
 
@@ -198,7 +210,7 @@ def test_opening_another_take_neither_loses_nor_empties_what_was_kept(
     first._session.open(Take(weights=np.zeros((9, len(SHAPES))), fps=24.0), None)
     (left,) = first.left_over()
     first.recover(left)
-    first.save_as(tmp_path / "a.retake")
+    saved(qtbot, first, tmp_path / "a.retake")
     first._session.open(first._session.original, None)  # the very same take again
     push(first._session, 2)
     first.close()
@@ -240,23 +252,36 @@ def test_a_folder_that_cannot_be_written_is_told_once_and_tried_again_with_each_
 def test_a_full_disk_keeps_the_work_in_memory_until_there_is_room(qtbot: QtBot, make: Made, tmp_path: Path) -> None:
     first = make()
     push(first._session, 0)
-    first.save_as(tmp_path / "a.retake")
+    saved(qtbot, first, tmp_path / "a.retake")
     database = first._project._database
     database.execute(f"PRAGMA max_page_count = {database.execute('PRAGMA page_count').fetchone()[0]}")
     with qtbot.waitSignal(first.failed, timeout=10_000) as told:
         push(first._session, 1)
     assert told.args[0] == "There is no room left on the disk for a.retake." and "memory" in told.args[1]
     assert first._session.edited and first._session.undo.count() == 2
-    with pytest.raises(EngineError, match="no room left"):
-        first.save_as(tmp_path / "a.retake")
+    assert "no room left" in refused(qtbot, first, tmp_path / "a.retake")
     database.execute("PRAGMA max_page_count = 1000000")
-    kept(qtbot, first, lambda: push(first._session, 2))
+    with qtbot.waitSignal(first.mended, timeout=10_000) as over:
+        kept(qtbot, first, lambda: push(first._session, 2))
+    assert over.args == ["There is no room left on the disk for a.retake."]
     assert not first._session.edited
     (tmp_path / "a.retake").unlink()
     push(first._session, 3)
-    first.save_as(tmp_path / "a.retake")
+    saved(qtbot, first, tmp_path / "a.retake")
     first.close()
     assert len(Project.open(tmp_path / "a.retake").contents.edits) == 4
+
+
+def test_no_room_for_unsaved_work_is_told_without_the_name_of_its_file(
+    qtbot: QtBot, make: Made, tmp_path: Path
+) -> None:
+    first = make()
+    kept(qtbot, first, lambda: push(first._session, 0))
+    database = first._project._database
+    database.execute(f"PRAGMA max_page_count = {database.execute('PRAGMA page_count').fetchone()[0]}")
+    with qtbot.waitSignal(first.failed, timeout=10_000) as told:
+        push(first._session, 1)
+    assert told.args[0] == "There is no room left on the disk for unsaved work."
 
 
 def test_what_cannot_be_written_is_edited_as_unsaved_work(
@@ -264,7 +289,7 @@ def test_what_cannot_be_written_is_edited_as_unsaved_work(
 ) -> None:
     first, path = make(), tmp_path / "a.retake"
     push(first._session, 0)
-    first.save_as(path)
+    saved(qtbot, first, path)
     first.close()
     second, before = make(), path.read_bytes()
     monkeypatch.setattr("engine.project.store.os.access", lambda *_: False)
@@ -306,12 +331,12 @@ def test_a_running_program_keeps_its_work_to_itself(make: Made, tmp_path: Path) 
 
 @pytest.mark.parametrize("seed", range(10))
 def test_a_kill_loses_no_edit_that_was_reported_as_finished(seed: int, tmp_path: Path) -> None:
-    kills.check(seed, tmp_path, saving=False)
+    kills.check(seed, tmp_path, "edit")
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_kill_while_saving_never_harms_the_old_file(seed: int, tmp_path: Path) -> None:
-    kills.check(seed, tmp_path, saving=True)
+    kills.check(seed, tmp_path, "save")
 
 
 def test_the_session_s_contents_are_what_its_edits_come_to(make: Made) -> None:

@@ -13,7 +13,7 @@ from engine.formats import read_take, write_take
 from engine.models.resample import interpolate
 from engine.performance import demo
 from engine.regress import infer
-from engine.take import SHAPE_INDEX, Take
+from engine.take import SHAPE_INDEX, SHAPES, Take
 
 LIPS = CONTROL_INDEX["lips_vertical"]
 
@@ -45,7 +45,7 @@ def test_a_patch_equals_inference_over_the_whole_take(demo_take: Take, fps: floa
     start = frames // 2
     asked = dragger.controls[start : start + 30].copy()
     asked[:, LIPS] = asked[:, LIPS] + 6.0
-    patch = dragger.drag(start, asked)
+    patch = dragger.drag(start, asked, follow=False)
 
     wanted = dragger.controls.copy()
     wanted[start : start + 30] = asked
@@ -100,3 +100,47 @@ def test_a_take_of_one_frame_can_be_edited() -> None:
 def test_a_change_must_be_finite(demo_take: Take) -> None:
     with pytest.raises(EditError):
         editing.ask(measure(demo_take.weights), "lips_vertical", (0, 5), "set", float("nan"))
+
+
+def test_a_wink_leaves_the_other_eye_bit_for_bit(demo_take: Take) -> None:
+    patch = edit_control(demo_take, "eyelid_right", (60, 66), "set", 0.0)
+    left = [index for index, name in enumerate(SHAPES) if name.startswith("eye") and name.endswith("Left")]
+    np.testing.assert_array_equal(patch.weights[:, left], demo_take.weights[patch.start : patch.stop, left])
+    assert patch.reached[60 - patch.start : 66 - patch.start, CONTROL_INDEX["eyelid_right"]].max() < 1.0
+
+
+def test_the_rest_that_follows_lets_a_drag_get_further(demo_take: Take) -> None:
+    missed = {}
+    for follow in (False, True):
+        patch = edit_control(demo_take, "lips_horizontal", (60, 80), "add", 5.0, follow=follow)
+        column = CONTROL_INDEX["lips_horizontal"]
+        missed[follow] = np.abs(patch.asked - patch.reached)[60 - patch.start : 80 - patch.start, column].mean()
+    assert missed[True] < 0.7 * missed[False]
+    assert missed[True] == pytest.approx(
+        np.abs((default := edit_control(demo_take, "lips_horizontal", (60, 80), "add", 5.0)).asked - default.reached)[
+            60 - default.start : 80 - default.start, CONTROL_INDEX["lips_horizontal"]
+        ].mean()
+    )
+
+
+def test_what_an_edit_before_asked_for_is_not_undone(demo_take: Take) -> None:
+    """Exactly: both curves are met, though the second drag alone would move the first."""
+    first = Dragger(demo_take)
+    start, wide = ask(first.controls, "lips_horizontal", (60, 80), "add", 4.0)
+    patch = first.drag(start, wide, exact_curve=True)
+    asked = np.full_like(first.controls, np.nan)
+    asked[start : start + len(wide), CONTROL_INDEX["lips_horizontal"]] = wide[:, CONTROL_INDEX["lips_horizontal"]]
+    second = Dragger(patch.apply(demo_take), asked=asked)
+    start, apart = ask(second.controls, "lips_vertical", (60, 80), "add", 4.0)
+    patch = second.drag(start, apart, exact_curve=True)
+    reached = patch.reached[60 - patch.start : 80 - patch.start]
+    width = CONTROL_INDEX["lips_horizontal"]
+    np.testing.assert_allclose(reached[:, width], asked[60:80, width], atol=0.05)
+    np.testing.assert_allclose(reached[:, LIPS], apart[60 - start : 80 - start, LIPS], atol=0.05)
+
+
+def test_closed_lips_stay_closed_while_their_corners_move() -> None:
+    take = Take(weights=np.zeros((90, 52)), fps=30.0)
+    for control, amount in (("lips_horizontal", -4.0), ("corner_left", 4.0)):
+        patch = edit_control(take, control, (30, 60), "add", amount)
+        assert patch.reached[:, LIPS].max() < 1.0

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import sqlite3
@@ -7,6 +8,7 @@ import zlib
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +20,8 @@ from engine.errors import EngineError, FormatError
 from engine.formats import livelink
 from engine.performance import demo
 from engine.project import Contents, Edit, InUseError, Media, Note, Project, Span, schema
+from engine.speech.lane import VisemeLane, attached, renamed, restored, shifted, with_boundary
+from engine.speech.visemes import Cue
 from engine.take import SHAPES, Take
 from tests.engine.projects import MARKS, an_edit, reopened, same, sample, sql
 
@@ -316,6 +320,61 @@ def test_saving_as_goes_on_in_the_new_file_and_leaves_the_old_one(contents: Cont
     assert (reopened(tmp_path / "a.retake").position, reopened(tmp_path / "b.retake").position) == (3, 0)
 
 
+def test_steps_put_while_a_copy_is_made_are_in_the_copy(
+    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("engine.project.store.STEP_PAGES", 1)
+    old, shares = project.create(tmp_path / "a.retake", replace(contents, edits=(), position=0)), []
+
+    def report(share: float) -> None:
+        shares.append(share)
+        count = min(len(shares), len(contents.edits))
+        old.put(replace(contents, edits=contents.edits[:count], position=count))
+
+    new = old.save_as(tmp_path / "b.retake", report)
+    assert len(new.contents.edits) == len(contents.edits) < len(shares) and shares[-1] == 1.0
+    new.close()
+    again = Project.open(tmp_path / "b.retake").contents
+    assert [edit.title for edit in again.edits] == [edit.title for edit in contents.edits]
+    for left, right in zip(again.edits, contents.edits, strict=True):
+        np.testing.assert_array_equal(left.weights, right.weights)
+
+
+def test_a_step_put_when_all_is_copied_is_missing_from_the_copy_and_known_to_be(
+    contents: Contents, tmp_path: Path
+) -> None:
+    old = project.create(tmp_path / "a.retake", replace(contents, edits=(), position=0))
+
+    def report(share: float) -> None:
+        if share == 1.0:
+            old.put(contents)
+
+    new = old.save_as(tmp_path / "b.retake", report)
+    assert new.contents.edits == ()
+    new.put(contents)
+    new.close()
+    assert len(Project.open(tmp_path / "b.retake").contents.edits) == len(contents.edits)
+
+
+@pytest.mark.parametrize("how", ["create", "save_as"])
+def test_progress_grows_to_all_of_it_and_can_stop_the_work(contents: Contents, tmp_path: Path, how: str) -> None:
+    work, shares = project.create(tmp_path / "work.retake", contents), []
+    target = tmp_path / "b.retake"
+    target.write_bytes(b"an older file")
+
+    def write(report: Callable[[float], None]) -> Project:
+        return project.create(target, contents, report) if how == "create" else work.save_as(target, report)
+
+    def stop(share: float) -> None:
+        raise EngineError("enough")
+
+    with pytest.raises(EngineError, match="enough"):
+        write(stop)
+    assert target.read_bytes() == b"an older file" and len(list(tmp_path.glob(".*.part"))) == 0
+    write(shares.append).close()
+    assert shares == sorted(shares) and shares[-1] == 1.0
+
+
 def test_a_project_that_is_open_is_left_alone_by_others(contents: Contents, tmp_path: Path) -> None:
     path = tmp_path / "a.retake"
     opened = project.create(path, contents)
@@ -385,3 +444,84 @@ def test_media_paths_that_are_no_paths_are_missing(tmp_path: Path, place: str) -
     os.mkfifo(tmp_path / "pipe.wav")
     for path in (place, "pipe.wav"):
         assert project.find(Media("audio", path, "00"), tmp_path).path is None
+
+
+def said(seed: int) -> list[tuple[Edit, VisemeLane | None, VisemeLane | None]]:
+    """A random walk of steps on the visemes: attached, moved, named, shifted, restored, removed."""
+    rng = np.random.default_rng(seed)
+    lane, edits = None, []
+    for step in range(20):
+        turn = int(rng.integers(0, 8)) if lane is not None else 0
+        if turn == 0:
+            at = np.sort(rng.random(int(rng.integers(2, 9)))) * 5
+            after = attached([Cue(a, b, "M") for a, b in pairwise(at)], f"{step}.TextGrid")
+        elif turn == 1:
+            after = None
+        elif turn == 2:
+            after = shifted(lane, float(rng.normal()))
+        elif turn == 3:
+            after = restored(lane)
+        elif turn == 4:
+            after = renamed(lane, int(rng.integers(0, len(lane.cues))), "AA1")
+        else:
+            after = with_boundary(lane, *lane.end_of(int(rng.integers(0, len(lane.cues)))), float(rng.random() * 5))
+        edits.append((project.viseme_edit(f"step {step}", project.change_between(lane, after)), lane, after))
+        lane = after
+    return edits
+
+
+def told(lane: VisemeLane | None) -> object:
+    return None if lane is None else (lane.cues, lane.originals, lane.source, lane.offset_s)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_step_on_the_visemes_comes_back_and_can_be_taken_back(
+    seed: int, random_take: Take, tmp_path: Path
+) -> None:
+    steps = said(seed)
+    edits = tuple(edit for edit, _, _ in steps)
+    for position in (0, 7, len(edits)):
+        path = tmp_path / f"{position}.retake"
+        project.create(path, Contents(random_take, edits, position)).close()
+        state = project.replay(reopened(path))
+        assert told(state.visemes) == (told(steps[position - 1][2]) if position else None)
+        for change, (_, before, after) in zip(state.changes, steps, strict=True):
+            assert told(change.applied(before)) == told(after)
+            assert told(change.inverse.applied(after)) == told(before)
+
+
+def test_a_step_on_a_long_lane_is_small(random_take: Take) -> None:
+    lane = attached([Cue(at / 10, at / 10 + 0.1, "M") for at in range(1000)], "long.TextGrid")
+    for after in (renamed(lane, 500, "AA1"), with_boundary(lane, 500, 501, 50.12), shifted(lane, 1.0)):
+        edit = project.viseme_edit("step", project.change_between(lane, after))
+        assert len(json.dumps(dict(edit.inputs))) < 300
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"at": 5},
+        {"at": -1},
+        {"at": "0"},
+        {"removed": 2},
+        {"added": [[0.0, 1.0]]},
+        {"added": [[0.0, 1.0, "quux"]]},
+        {"added": [[1.0, 0.0, "M"]]},
+        {"added": [[0.0, 1e300, "M"]]},
+        {"added": [[0.0, 2.0, "M"], [1.0, 3.0, "M"]]},
+        {"added": 3},
+        {"lane": {"source": 1, "offset_s": 0.0, "attached": True}},
+        {"lane": {"source": "", "offset_s": "x", "attached": True}},
+        {"lane": {"source": "", "offset_s": 0.0, "attached": False}},
+        {"lane": 4},
+        {"lane": {}},
+    ],
+)
+def test_a_step_on_the_visemes_that_cannot_be_is_refused(
+    wrong: dict[str, object], random_take: Take, tmp_path: Path
+) -> None:
+    (edit, *_), *_ = said(0)
+    broken = replace(edit, inputs={**edit.inputs, **wrong})
+    project.create(tmp_path / "a.retake", Contents(random_take, (broken,), 1)).close()
+    with pytest.raises(FormatError, match="visemes"):
+        Project.open(tmp_path / "a.retake")

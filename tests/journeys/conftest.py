@@ -43,7 +43,8 @@ def settled(qtbot: QtBot, window: MainWindow) -> None:
     """Wait until nothing is inferred or drawn any more, full resolution included."""
 
     def nothing_left() -> bool:
-        return window.inference.idle and window.preview.drawing.idle and not window.preview._still.isActive()
+        drawn = window.preview.drawing.idle and not window.preview._still.isActive()
+        return window.inference.idle and drawn and window.flagging.idle
 
     qtbot.waitUntil(nothing_left, timeout=30_000)
     qtbot.wait(20)  # results that were finished are still on their way to this thread

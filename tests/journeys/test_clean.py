@@ -13,11 +13,64 @@ from engine.take import Take
 LEFT = Qt.MouseButton.LeftButton
 
 
+def noisy(window: MainWindow) -> Take:
+    """Open the demo take with noise on it."""
+    weights = window.session.take.weights
+    noise = 0.02 * np.random.default_rng(0).standard_normal(weights.shape)
+    rough = Take(weights=np.clip(weights + noise * (weights > 0.02), 0, 1), fps=30.0)
+    window.session.open(rough, None)
+    return rough
+
+
+def test_what_is_removed_is_drawn_under_each_curve(qtbot: QtBot, window: MainWindow) -> None:
+    rough, session = noisy(window), window.session
+    session.select((60, 200))
+    session.set_view(0, 250)
+    QTest.keyClick(window, Qt.Key.Key_C)
+    assert not any(lane.removed.area.isVisible() for lane in window.curves.lanes)
+    QTest.mouseClick(window.clean.preview_button, LEFT)
+    qtbot.waitUntil(lambda: session.draft is not None, timeout=60_000)
+    session.expand(0)
+    assert len(window.curves.lanes) > 8
+    for lane in window.curves.lanes:
+        drawn = lane.removed.area
+        frames, heights = drawn.getData()
+        removed = session.curve(lane.key)[60:200] - session.draft_curve(lane.key)
+        np.testing.assert_array_equal(frames, np.arange(60, 200))
+        low, high = lane.range
+        full = float(lane.gutter.removed.split("±")[1].split()[0])
+        wanted = np.clip(removed / full, -1, 1)
+        at = (heights - drawn.opts["fillLevel"]) / (0.34 / 2 * 0.8 * (high - low))
+        np.testing.assert_allclose(at, wanted, atol=1e-6)
+        assert (np.abs(removed) <= full).mean() >= 0.98
+        assert heights.max() < session.curve(lane.key).min()  # it meets no curve
+    before = session.draft
+    window.clean.strength.setValue(0)
+    qtbot.waitUntil(lambda: session.draft is not before, timeout=60_000)
+    heights = window.curves.lanes[0].removed.area.getData()[1]
+    assert np.ptp(heights) == 0  # the slider is live: nothing is removed at 0 %
+    np.testing.assert_array_equal(session.take.weights, rough.weights)
+
+
+def test_the_removed_curve_is_shown_or_not_by_box_and_key(qtbot: QtBot, window: MainWindow) -> None:
+    noisy(window)
+    lane = window.curves.lanes[0]
+    fitted = lane.range
+    QTest.keyClick(window, Qt.Key.Key_C)
+    QTest.mouseClick(window.clean.preview_button, LEFT)
+    qtbot.waitUntil(lane.removed.area.isVisible, timeout=60_000)
+    assert lane.range[0] < fitted[0] and lane.range[1] == fitted[1]
+    QTest.keyClick(window, Qt.Key.Key_R, Qt.KeyboardModifier.ShiftModifier)
+    assert not lane.removed.area.isVisible() and lane.range == fitted and not window.clean.removed.isChecked()
+    window.clean.removed.click()
+    assert lane.removed.area.isVisible() and window.actions_by_name["show_removed"].isChecked()
+    QTest.keyClick(window, Qt.Key.Key_V)
+    assert not lane.removed.area.isVisible() and lane.range == fitted
+
+
 def test_cleaning_a_selection_is_previewed_and_kept(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
-    noise = 0.02 * np.random.default_rng(0).standard_normal(session.take.weights.shape)
-    rough = Take(weights=np.clip(session.take.weights + noise * (session.take.weights > 0.02), 0, 1), fps=30.0)
-    session.open(rough, None)
+    rough = noisy(window)
     session.select((60, 200))
     QTest.keyClick(window, Qt.Key.Key_C)
     QTest.mouseClick(window.clean.preview_button, LEFT)

@@ -17,7 +17,7 @@ LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
 
 def on_lane(window: MainWindow, frame: float) -> QPoint:
     timeline = window.timeline
-    return QPoint(round(timeline.x_of(frame)), timeline.height() - 8)
+    return QPoint(round(timeline.x_of(frame)), round(timeline.lane_box("spans").center().y()))
 
 
 def test_a_lost_span_is_filled_with_the_chosen_variant(qtbot: QtBot, window: MainWindow) -> None:

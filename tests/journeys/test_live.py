@@ -6,11 +6,16 @@ import socket
 import threading
 
 import numpy as np
+import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QMessageBox
 from pytestqt.qtbot import QtBot
 
+from app.keeper import Keeper
 from app.main_window import MainWindow
+from app.session import Session
+from engine.formats import read_take
 from engine.live.replay import replay
 from engine.performance import demo
 from engine.take import Take
@@ -36,6 +41,7 @@ def test_a_stream_is_shown_recorded_and_opened(qtbot: QtBot, window: MainWindow)
     with qtbot.waitSignal(window.live.face, timeout=20_000) as shown:
         sender.start()
     assert np.asarray(shown.args[0]).shape == (52,)
+    assert window.preview._frame_label.text() == "live"
     sender.join(timeout=20)
     qtbot.waitUntil(lambda: window.live._recorder is not None and len(window.live._recorder) >= 45, timeout=10_000)
     QTest.mouseClick(window.live.record_button, LEFT)
@@ -43,6 +49,68 @@ def test_a_stream_is_shown_recorded_and_opened(qtbot: QtBot, window: MainWindow)
     np.testing.assert_allclose(window.session.take.weights, sent.weights, atol=1e-6)
     QTest.mouseClick(window.live.listen_button, LEFT)
     assert not window.live.listening
+    assert window.preview._frame_label.text() == "frame 0"
+
+
+def recording(qtbot: QtBot, window: MainWindow, sent: Take) -> None:
+    """Listen, record, and wait until all that is sent has come."""
+    window.edits.live_tool()
+    port = free_port()
+    window.live.port.setValue(port)
+    QTest.mouseClick(window.live.listen_button, LEFT)
+    QTest.mouseClick(window.live.record_button, LEFT)
+    sender = threading.Thread(target=replay, args=(sent, ("127.0.0.1", port)))
+    sender.start()
+    qtbot.waitUntil(lambda: len(window.live._recorder or ()) >= len(sent), timeout=20_000)
+    sender.join()
+
+
+def test_a_recording_is_kept_until_it_is_saved(qtbot: QtBot, window: MainWindow) -> None:
+    recording(qtbot, window, Take(weights=demo.performance().weights[:20], fps=30.0))
+    with qtbot.waitSignal(window.keeper.kept, timeout=10_000):
+        QTest.mouseClick(window.live.record_button, LEFT)
+    assert window.session.edited  # closing asks
+    (kept,) = window.keeper.folder.iterdir()
+    assert kept.suffix == ".retake"
+
+
+def test_a_window_closed_while_it_records_offers_the_recording_at_the_next_start(
+    qtbot: QtBot, window: MainWindow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent = Take(weights=demo.performance().weights[:50], fps=30.0)
+    recording(qtbot, window, sent)
+    qtbot.waitUntil(lambda: sum(path.stat().st_size for path in window.keeper.folder.iterdir()) > 5_000, timeout=10_000)
+    window.close()
+    session = Session(demo.performance())
+    keeper = Keeper(session, window.keeper.folder)
+    try:
+        assert keeper.left_over() == []  # for all it knows another program is still recording
+        monkeypatch.setattr("app.keeper.ABANDONED_S", -1.0)
+        (left,) = keeper.left_over()
+        keeper.recover(left)
+    finally:
+        keeper.close()
+    np.testing.assert_allclose(session.take.weights, sent.weights, atol=1e-6)
+
+
+def test_a_recording_is_not_lost_to_a_question(
+    qtbot: QtBot, window: MainWindow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    window.session.undo.resetClean()  # edits that are not saved
+    recording(qtbot, window, Take(weights=demo.performance().weights[:20], fps=30.0))
+    monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Cancel)
+    before = window.session.take
+    QTest.mouseClick(window.live.record_button, LEFT)
+    assert window.session.take is before and window.notices.isVisible()
+    (kept,) = window.keeper.folder.glob("*.partial.csv")
+    assert len(read_take(kept)) == 20
+    monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Discard)
+
+
+def test_the_meter_tells_how_late_the_picture_is(qtbot: QtBot, window: MainWindow) -> None:
+    recording(qtbot, window, Take(weights=demo.performance().weights[:40], fps=30.0))
+    qtbot.waitUntil(lambda: "on screen" in window.live.status.text(), timeout=10_000)
+    assert all(0 < spent < 10_000 for spent in window.live._shown_ms)
 
 
 def test_a_port_in_use_is_said_in_a_sentence(qtbot: QtBot, window: MainWindow) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import numpy as np
+import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
@@ -14,7 +16,10 @@ from pytestqt.qtbot import QtBot
 from app.main_window import MainWindow
 from engine.controls import CONTROL_INDEX, measure
 from engine.formats import read_take
+from engine.performance import demo
+from tests.engine.projects import same
 from tests.journeys.conftest import settled
+from tests.pictures.compare import SIZE, looks_as_it_did
 
 LIPS = CONTROL_INDEX["lips_vertical"]
 
@@ -81,7 +86,8 @@ def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
 
     project, exported = tmp_path / "Ärger 顔.retake", tmp_path / "Ärger 顔.csv"
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(project), ""))
-    QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
+        QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
     assert not session.edited
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(exported), ""))
     QTest.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
@@ -138,3 +144,50 @@ def test_a_file_that_cannot_be_read_leaves_the_work_as_it_was(qtbot: QtBot, wind
         assert window.notices.isVisible() and name in window.notices.text.text()
         assert "Traceback" not in window.notices.text.text()
     assert window.session.take is take and window.session.undo.count() == 1
+
+
+def test_from_opening_to_reopening_everything_is_equal(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Open, drag, undo, redo, play, save and reopen by keys and mouse alone: what comes back is what was left."""
+    session, control = window.session, Qt.KeyboardModifier.ControlModifier
+    take, project = Path(shutil.copy(demo.BUNDLED, tmp_path / "mine.csv")), tmp_path / "mine.retake"
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(take), ""))
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(project), ""))
+    window.resize(*SIZE)
+    QTest.keyClick(window, Qt.Key.Key_O, control)
+    assert session.path == take
+    opened = session.take
+
+    frame = int(np.argmax(session.controls[:200, LIPS]))
+    drag(qtbot, window, LIPS, frame, -9.0)
+    edited = session.take
+    QTest.keyClick(window, Qt.Key.Key_Z, control)
+    np.testing.assert_array_equal(session.take.weights, opened.weights)
+    QTest.keyClick(window, Qt.Key.Key_Y, control)
+    np.testing.assert_array_equal(session.take.weights, edited.weights)
+
+    QTest.keyClick(window, Qt.Key.Key_Left, Qt.KeyboardModifier.ShiftModifier)
+    QTest.keyClick(window, Qt.Key.Key_Space)
+    qtbot.waitUntil(lambda: session.playhead > 10, timeout=10_000)
+    QTest.keyClick(window, Qt.Key.Key_Space)
+    QTest.keyClick(window, Qt.Key.Key_S, control)
+    qtbot.waitUntil(lambda: not session.edited, timeout=10_000)
+    assert project.exists()
+    left = session.contents()
+    asked, controls = session.asked, session.controls
+
+    window.load(demo.BUNDLED)
+    qtbot.waitUntil(lambda: session.path == demo.BUNDLED, timeout=10_000)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(project), ""))
+    QTest.keyClick(window, Qt.Key.Key_O, control)
+    qtbot.waitUntil(lambda: session.path == project, timeout=10_000)
+    assert not session.edited and same(session.contents(), left)
+    np.testing.assert_array_equal(session.take.weights, edited.weights)
+    np.testing.assert_array_equal(session.original.weights, opened.weights)
+    np.testing.assert_array_equal(session.asked, asked)
+    np.testing.assert_allclose(session.controls, controls, atol=1e-9)
+    assert session.undo.undoText() == "drag lips apart"
+    session.move_playhead(frame)
+    settled(qtbot, window)
+    assert looks_as_it_did(window, "journey_non_expert", tmp_path)

@@ -21,7 +21,8 @@ def test_a_note_is_typed_shown_saved_and_taken_back(qtbot: QtBot, window: MainWi
     (note,) = session.marks.notes
     assert (note.frame, note.text) == (120, "lips miss the b")
     assert window.timeline.sizeHint().height() > height
-    window.keeper.save_as(tmp_path / "noted.retake")
+    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
+        window.keeper.save_as(tmp_path / "noted.retake")
     assert window.load(demo.BUNDLED) and session.marks.notes == ()
     assert window.load(tmp_path / "noted.retake") and session.marks.notes == (note,)
     session.undo.undo()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.main_window import MainWindow
@@ -15,17 +16,49 @@ from tests.journeys.conftest import settled
 SMILE, LIPS = SHAPE_INDEX["mouthSmileLeft"], CONTROL_INDEX["lips_vertical"]
 
 
+def press(widget: QWidget, key: Qt.Key, times: int = 1) -> None:
+    for _ in range(times):
+        QTest.keyClick(widget, key)
+
+
+def face_shown(window: MainWindow) -> np.ndarray:
+    """The picture in the preview, (height, width, 3)."""
+    image = window.preview.face.image
+    rows = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.bytesPerLine())
+    return rows[:, : 3 * image.width()].reshape(image.height(), -1, 3).astype(float)
+
+
 def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
     session.move_playhead(80)
     QTest.keyClick(window, Qt.Key.Key_K)
     QTest.keyClicks(window.pins.search, "smile")
     for name in ("mouthSmileLeft", "mouthSmileRight"):
-        window.pins.sliders[name].setValue(140)
+        press(window.pins.sliders[name], Qt.Key.Key_Home)
+        press(window.pins.sliders[name], Qt.Key.Key_PageUp, times=14)
         qtbot.waitUntil(lambda: session.draft is not None, timeout=20_000)
-    window.pins.before.setValue(25)
-    window.pins.after.setValue(25)
     settled(qtbot, window)
+    narrow = session.draft
+    for box in (window.pins.before, window.pins.after):
+        box.setFocus()
+        box.selectAll()
+        QTest.keyClicks(box, "25")
+        QTest.keyClick(box, Qt.Key.Key_Tab)
+    settled(qtbot, window)
+    wide = session.draft
+    assert narrow is not None and wide is not None and (wide.start, wide.stop) == (55, 106)
+    assert narrow.start > 55 and narrow.stop < 106
+    np.testing.assert_allclose(wide.weights[25, SMILE], narrow.weights[80 - narrow.start, SMILE])
+    assert wide.weights[narrow.start - 55, SMILE] > narrow.weights[0, SMILE]
+
+    # B held: the face as it was; let go: the pinned one again
+    smiling = face_shown(window)
+    QTest.keyPress(window, Qt.Key.Key_B)
+    settled(qtbot, window)
+    assert window.preview.face.view == "Before" and np.abs(face_shown(window) - smiling).mean() > 0.2
+    QTest.keyRelease(window, Qt.Key.Key_B)
+    settled(qtbot, window)
+    np.testing.assert_allclose(face_shown(window), smiling, atol=3)
     QTest.mouseClick(window.pins.keep_button, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: session.undo.index() == 1, timeout=10_000)
 
@@ -46,7 +79,7 @@ def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtB
 
 def test_dropping_a_pin_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWindow) -> None:
     QTest.keyClick(window, Qt.Key.Key_K)
-    next(iter(window.pins.sliders.values())).setValue(150)
+    press(next(iter(window.pins.sliders.values())), Qt.Key.Key_End)
     qtbot.waitUntil(lambda: window.session.draft is not None, timeout=20_000)
     QTest.mouseClick(window.pins.drop_button, Qt.MouseButton.LeftButton)
     assert window.session.draft is None and window.session.undo.count() == 0

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
+import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
 from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from app.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
+from engine.performance import demo
 from engine.take import SHAPE_INDEX
 from tests.journeys.conftest import settled
+from tests.pictures.compare import SIZE, looks_as_it_did
 
 LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
 LIPS, JAW = CONTROL_INDEX["lips_vertical"], FIRST_WEIGHT + SHAPE_INDEX["jawOpen"]
@@ -130,3 +136,77 @@ def test_a_typed_value_is_reached(qtbot: QtBot, window: MainWindow) -> None:
     qtbot.waitUntil(lambda: window.session.undo.count() == 1, timeout=10_000)
     assert abs(window.session.controls[160, LIPS] - 7.5) < 0.1
     assert CURVES[LIPS].title in window.session.undo.undoText()
+
+
+def reopened(qtbot: QtBot, window: MainWindow, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Save the project, open something else, and open it again."""
+    session = window.session
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
+    QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    qtbot.waitUntil(lambda: not session.edited, timeout=10_000)
+    for opened in (demo.BUNDLED, path):
+        window.load(opened)
+        qtbot.waitUntil(lambda opened=opened: session.path == opened, timeout=10_000)
+
+
+def test_a_morning_of_editing_is_kept_step_by_step(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Box-select, scale in time, draw, paste, Butterworth and a raw weight, one after another by mouse and keys."""
+    session, area, control = window.session, window.curves.viewport(), Qt.KeyboardModifier.ControlModifier
+    window.resize(*SIZE)
+    states = [session.take.weights]
+
+    def done(step: str) -> None:
+        qtbot.waitUntil(lambda: session.undo.index() == len(states), timeout=10_000)
+        settled(qtbot, window)
+        assert session.undo.undoText() == step and (session.take.weights != states[-1]).any()
+        states.append(session.take.weights)
+
+    QTest.keyClick(window, Qt.Key.Key_S)
+    settled(qtbot, window)
+    QTest.mousePress(area, LEFT, PLAIN, at(window, LIPS, 70, 5.0))
+    QTest.mouseMove(area, at(window, LIPS, 99, 5.0))
+    QTest.mouseRelease(area, LEFT, PLAIN, at(window, LIPS, 99, 5.0))
+    start, stop = session.selection or (0, 0)
+    middle = window.curves.lane(LIPS).scene_box().center().y()
+    ends = [
+        window.curves.mapFromScene(QPointF(window.curves.lane(LIPS).x_of(x), middle)) for x in (stop - 0.5, stop - 9)
+    ]
+    gesture(qtbot, window, *ends)
+    done("retime lips apart")
+
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    QTest.keyClick(window, Qt.Key.Key_D)
+    gesture(qtbot, window, *(at(window, LIPS, f, v) for f, v in ((140, 3.0), (150, 9.0), (160, 9.0), (170, 3.0))))
+    done("draw lips apart")
+
+    session.select((start, stop))
+    QTest.keyClick(window, Qt.Key.Key_C, control)
+    QTest.keyClick(window, Qt.Key.Key_D, control)
+    session.move_playhead(200)
+    QTest.keyClick(window, Qt.Key.Key_V, control)
+    done(f"paste {stop - start} frames")
+
+    session.move_playhead(20)
+    QTest.keyClick(window, Qt.Key.Key_I)
+    session.move_playhead(60)
+    QTest.keyClick(window, Qt.Key.Key_O)
+    assert session.selection == (20, 61)
+    QTest.keyClick(window, Qt.Key.Key_B, control)
+    done("smooth at 6 Hz")
+
+    QTest.keyClick(window, Qt.Key.Key_D, control)
+    QTest.keyClick(window, Qt.Key.Key_V)
+    QTest.keyClick(window, Qt.Key.Key_W)
+    settled(qtbot, window)
+    value = float(session.curve(JAW)[150])
+    gesture(qtbot, window, at(window, JAW, 150, value), at(window, JAW, 150, value + 0.2))
+    done("drag jawOpen")
+
+    settled(qtbot, window)
+    assert looks_as_it_did(window, "journey_power_user", tmp_path)
+    reopened(qtbot, window, tmp_path / "morning.retake", monkeypatch)
+    for weights in reversed(states):
+        np.testing.assert_array_equal(session.take.weights, weights)
+        QTest.keyClick(window, Qt.Key.Key_Z, control)

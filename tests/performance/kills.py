@@ -34,7 +34,7 @@ def fingerprint(contents: Contents) -> str:
     return digest.hexdigest()
 
 
-def edit_until_killed(folder: Path, seed: int, tell: Connection) -> None:
+def edit_until_killed(folder: Path, seed: int, tell: Connection, *, frames: int = FRAMES, saves: bool = False) -> None:
     """Push, undo and redo edits for ever, telling each state before it is reached and when it is reported safe."""
     from PySide6.QtCore import QCoreApplication
 
@@ -44,13 +44,16 @@ def edit_until_killed(folder: Path, seed: int, tell: Connection) -> None:
 
     application = QCoreApplication([])
     rng = np.random.default_rng(seed)
-    session = Session(Take(weights=rng.random((FRAMES, len(SHAPES))), fps=60.0, name="killed"))
+    session = Session(Take(weights=rng.random((frames, len(SHAPES))), fps=60.0, name="killed"))
     keeper = Keeper(session, folder)
     keeper.kept.connect(lambda contents: tell.send(("kept", fingerprint(contents))))
     keeper.failed.connect(lambda *sentence: tell.send(("failed", " ".join(sentence))))
     tell.send(("doing", fingerprint(session.contents())))
     while True:
         now = session.contents()
+        if saves and keeper.saving is None and rng.random() < 0.2:
+            (folder / "saved").mkdir(exist_ok=True)
+            keeper.save_as(folder / "saved" / f"{rng.integers(0, 2)}.retake")
         if session.undo.count() and rng.random() < (0.3 if session.undo.index() < LATEST else 0.9):
             position = int(rng.integers(0, session.undo.count() + 1))
             tell.send(("doing", fingerprint(replace(now, position=position))))
@@ -66,6 +69,11 @@ def edit_until_killed(folder: Path, seed: int, tell: Connection) -> None:
         until = time.perf_counter() + rng.exponential(0.01)
         while time.perf_counter() < until:
             application.processEvents()
+
+
+def edit_and_save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
+    """Edit a take that is long enough for a save to take a while, and let it be saved here and there meanwhile."""
+    edit_until_killed(folder, seed, tell, frames=SAVED_FRAMES, saves=True)
 
 
 def save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
@@ -156,34 +164,44 @@ def may_be_found(messages: list[tuple[str, str]]) -> tuple[list[str], int]:
     return reached[safe:], reports
 
 
-def check(seed: int, folder: Path, *, saving: bool) -> int:
+SESSIONS = {"edit": edit_until_killed, "save": save_until_killed, "work": edit_and_save_until_killed}
+
+
+def check(seed: int, folder: Path, kind: str) -> int:
     """Kill one session and prove that nothing it had reported is lost; returns how many reports it had made."""
     rng = np.random.default_rng(seed)
-    session = save_until_killed if saving else edit_until_killed
-    process, told = start(session, folder, seed)
+    process, told = start(SESSIONS[kind], folder, seed)
+    longest_s = LONGEST_S if kind == "edit" else 4 * LONGEST_S
     try:
         messages = [told.recv()]
-        messages += listen_to_saves(told, rng) if saving else listen(told, float(rng.uniform(0, LONGEST_S)))
+        messages += listen_to_saves(told, rng) if kind == "save" else listen(told, float(rng.uniform(0, longest_s)))
         messages += kill(process, told)
     finally:
         process.kill()
     allowed, reports = may_be_found(messages)
-    paths = [folder / "saved.retake"] if saving else list(folder.glob("*.retake"))
-    assert len(paths) == 1 or (reports == 0 and not paths), paths
-    for path in paths:
-        opened = Project.open(path)
-        found = fingerprint(opened.contents)
-        opened.close()
-        assert found in allowed, f"seed {seed}: an edit that was reported as finished is gone"
+    paths = [folder / "saved.retake"] if kind == "save" else list(folder.glob("**/*.retake"))
+    assert len(paths) == 1 or (reports == 0 and not paths) or kind == "work", paths
+    found = [content_of(path) for path in paths]
+    some = any(content in allowed for content in found)
+    assert some or (reports == 0 and not paths), f"seed {seed}: an edit that was reported as finished is gone"
     return reports
 
 
+def content_of(path: Path) -> str:
+    """Return the fingerprint of a project, which has to open."""
+    opened = Project.open(path)
+    try:
+        return fingerprint(opened.contents)
+    finally:
+        opened.close()
+
+
 def main(times: int) -> None:
-    """Kill so many sessions, every other one while it saves, and say what came of it."""
+    """Kill so many sessions, a third while they save and a third while they do both, and say what came of it."""
     reports = []
     for seed in range(times):
         with tempfile.TemporaryDirectory() as folder:
-            reports.append(check(seed, Path(folder), saving=seed % 2 == 1))
+            reports.append(check(seed, Path(folder), list(SESSIONS)[seed % len(SESSIONS)]))
     print(f"{times} kills, {sum(reports)} finished steps reported before them, none lost")
 
 

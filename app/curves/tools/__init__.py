@@ -21,6 +21,7 @@ TOOLS: dict[str, type[Tool]] = {
     "mark": MarkTool,
     "clean": ScrubTool,
     "live": ScrubTool,
+    "retarget": ScrubTool,
 }
 
 

@@ -1,4 +1,4 @@
-"""A moving mesh to other programs: glTF with morph targets, or an npz of vertices."""
+"""A moving mesh to other programs: glTF with morph targets, USD with points over time, or an npz of vertices."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
+from engine.formats.characters import usd
 from engine.take import Array
 
 TOLERANCE = 1e-4  # of the mesh's size: what leaving a morph target out may move a vertex by
 MOST_TARGETS = 200
-ENDINGS = (".glb", ".npz")
+ENDINGS = (".glb", *usd.ENDINGS, ".npz")
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +50,12 @@ def write(mesh: MovingMesh, path: Path) -> None:
         write_bytes(path, [buffer.getvalue()])
     elif ending == ".glb":
         write_bytes(path, [_glb(mesh)])
+    elif ending in usd.ENDINGS:
+        usd.write(mesh, path)
     else:
-        raise FormatError(f"{path.name} is not a kind of file that a moving mesh can be in.", "Use .glb or .npz.")
+        raise FormatError(
+            f"{path.name} is not a kind of file that a moving mesh can be in.", f"Use one of: {', '.join(ENDINGS)}."
+        )
 
 
 def targets(mesh: MovingMesh) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:

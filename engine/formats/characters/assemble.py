@@ -6,22 +6,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
-from scipy.spatial import KDTree
 
-from engine.character import Character, bundled
+from engine.character import Character
 from engine.errors import FormatError
+from engine.formats.characters.colouring import colours_of
+from engine.formats.characters.landmarks import transfer_landmarks
 from engine.formats.characters.names import Match, match_names
 from engine.formats.characters.raw import RawCharacter
-from engine.manifold.drive import parts_of
-from engine.manifold.pose import fit_similarity
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
 UNITS_MM = {"mm": 1.0, "cm": 10.0, "in": 25.4, "m": 1000.0}
 HEAD_MM = (150.0, 700.0)  # height of a head, from chin-to-crown alone to head and shoulders
 TYPICAL_MM = 280.0
 UP = ("y", "z")
-SKIN = (205, 165, 145)
 
 
 @dataclass(frozen=True)
@@ -105,7 +102,7 @@ def assemble(
         neutral.astype(np.float32),
         raw.triangles,
         deltas,
-        np.full((len(neutral), 3), SKIN, np.uint8),
+        colours_of(neutral, raw.triangles, found),
         found,
         raw.name,
     )
@@ -132,91 +129,3 @@ def _require_inside(landmarks: Mapping[str, int], raw: RawCharacter) -> None:
     for name, vertex in landmarks.items():
         if not 0 <= vertex < len(raw.vertices):
             raise FormatError(f"The landmark {name!r} names vertex {vertex}; {raw.name} has {len(raw.vertices)}.")
-
-
-def transfer_landmarks(
-    neutral: Array, triangles: npt.NDArray[np.int32], deltas: npt.NDArray[np.float32], given: Mapping[str, int]
-) -> tuple[dict[str, int], dict[str, float]]:
-    """Find the bundled head's landmarks on another head in our frame: rigid fit with scale, then the nearest vertex.
-
-    Where both heads have shapes, the fit pairs the places that move most in each (the jaw's opening finds the chin,
-    a blink its lid); landmarks picked by hand take part in the fit and stay as they are. Upper and lower lip and lid
-    lie at one place, so the nearest vertex is sought among those that move as the landmark does.
-    """
-    head = bundled()
-    source = head.neutral.astype(np.float64)
-    fitted = _fit(source, head, neutral, deltas, given)
-    found, away = dict(given), dict.fromkeys(given, 0.0)
-    skin = np.flatnonzero(_largest_part(triangles, len(neutral)))
-    size = np.linalg.norm(np.ptp(source, axis=0)) / 20
-    for name, vertex in head.landmarks.items():
-        if name in given:
-            continue
-        gap = np.linalg.norm(neutral[skin] - fitted[vertex], axis=1)
-        unlike = _unlike(head.deltas[:, vertex], deltas[:, skin]) if np.abs(deltas).any() else np.zeros(len(skin))
-        best = int(np.argmin(gap + size * unlike))
-        found[name], away[name] = int(skin[best]), float(gap[best])
-    return found, away
-
-
-def _fit(
-    source: Array,
-    head: Character,
-    neutral: Array,
-    deltas: npt.NDArray[np.float32],
-    given: Mapping[str, int],
-) -> Array:
-    """Return the bundled head's vertices laid onto another head, (n, 3)."""
-    pairs = [
-        (source[head.landmarks[name]], neutral[vertex]) for name, vertex in given.items() if name in head.landmarks
-    ]
-    for shape in range(len(SHAPES)):
-        ours, theirs = (_centre_of_motion(v, d[shape]) for v, d in ((source, head.deltas), (neutral, deltas)))
-        if ours is not None and theirs is not None:
-            pairs.append((ours, theirs))
-    if len(pairs) >= 4:
-        start, end = (np.array(side) for side in zip(*pairs, strict=True))
-        placed = fit_similarity(start, end[None], mirrored=False).apply(source)[0]
-    else:
-        scale = np.ptp(neutral[:, 1]) / np.ptp(source[:, 1])
-        placed = (source - _middle(source)) * scale + _middle(neutral)
-    return _to_surface(placed, np.flatnonzero(_largest_part(head.triangles, len(source))), neutral)
-
-
-def _to_surface(placed: Array, skin: npt.NDArray[np.int64], neutral: Array, *, rounds: int = 12) -> Array:
-    """Refine a fit by pairing each vertex of the skin with the nearest one of the other head (ICP)."""
-    tree = KDTree(neutral)
-    sample = placed[skin[:: max(1, len(skin) // 1500)]]
-    laid = placed
-    for _ in range(rounds):
-        away, found = tree.query(sample)
-        nearest = np.asarray(found, np.int64)
-        close = away <= np.percentile(away, 80)
-        motion = fit_similarity(sample[close], neutral[nearest[close]][None], mirrored=False)
-        sample, laid = motion.apply(sample)[0], motion.apply(laid)[0]
-    return laid
-
-
-def _middle(points: Array) -> Array:
-    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
-
-
-def _centre_of_motion(vertices: Array, delta: npt.NDArray[np.float32]) -> Array | None:
-    """Return where a shape moves most, (3,); none for a shape the head has not."""
-    travel = np.linalg.norm(delta, axis=1).astype(np.float64)
-    if travel.max(initial=0.0) <= 0:
-        return None
-    share = np.where(travel > travel.max() / 2, travel, 0.0)
-    return np.asarray(share @ vertices / share.sum())
-
-
-def _largest_part(triangles: npt.NDArray[np.int32], vertices: int) -> npt.NDArray[np.bool_]:
-    parts = parts_of(triangles, vertices)
-    return np.asarray(parts == np.argmax(np.bincount(parts)))
-
-
-def _unlike(one: npt.NDArray[np.float32], many: npt.NDArray[np.float32]) -> Array:
-    """Return how differently vertices move from one vertex, 0..2, for deltas (52, 3) and (52, n, 3)."""
-    flat, others = one.ravel(), many.transpose(1, 0, 2).reshape(many.shape[1], -1)
-    length = np.linalg.norm(others, axis=1) * np.linalg.norm(flat)
-    return np.asarray(1.0 - (others @ flat) / np.maximum(length, 1e-9), np.float64)

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from app import cli
-from engine.character import bundled, load
+from engine.character import BUNDLED, bundled, load
 from engine.formats import read_take
 from engine.formats.characters.animation import MovingMesh, write
 from engine.performance import demo
@@ -73,6 +73,7 @@ def test_a_take_drives_a_mesh_without_shapes(foreign: Path, tmp_path: Path) -> N
         (["character", "import", "{folder}", "-o", "{out}", "--landmark", "chin"], "not a name and a value"),
         (["character", "import", "{folder}", "-o", "{out}", "--landmark", "chin=x"], "needs the number"),
         (["character", "import", "{folder}", "-o", "{out}", "--name", "grin=jawOpen"], "no shape called 'grin'"),
+        (["character", "landmarks", "{folder}", "-o", "{out}", "--landmark", "ear=3"], "no landmark called 'ear'"),
         (["drive", "{missing}", "--mesh", "{folder}", "-o", "{out}"], "could not be read"),
     ],
 )
@@ -90,3 +91,18 @@ def test_a_moving_mesh_of_another_program_is_a_character_too(tmp_path: Path) -> 
     frames = np.stack([head.neutral, head.vertices(np.full(52, 0.5))])
     write(MovingMesh(head.neutral.astype(float), head.triangles, frames, 30.0), tmp_path / "m.glb")
     assert cli.run(["character", "import", str(tmp_path / "m.glb"), "-o", str(tmp_path / "m.npz")]) == 0
+
+
+def test_landmarks_are_found_anew_around_those_placed_by_hand(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    head, out = bundled(), tmp_path / "head.npz"
+    chin = head.landmarks["chin"] + 1
+    arguments = ["character", "landmarks", str(BUNDLED), "-o", str(out), "--landmark", f"chin={chin}", "--json"]
+    assert cli.run(arguments) == 0
+    rows = {row["landmark"]: row for row in json.loads(capsys.readouterr().out)["rows"]}
+    assert rows["chin"] == {"landmark": "chin", "vertex": chin, "away_mm": 0.0, "by_hand": True}
+    found = load(out).landmarks
+    assert found["chin"] == chin and set(found) == set(head.landmarks)
+    for name in set(found) - {"chin"}:
+        assert np.linalg.norm(head.neutral[found[name]] - head.neutral[head.landmarks[name]]) < 3, name

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from app import cli
-from engine.character import bundled
-from engine.formats import read_take
+from engine.character import BUNDLED, bundled
+from engine.formats import labels, read_take
 from engine.formats.markers import Markers, write
 from engine.performance import demo
 from engine.spacetime.layout import standard
@@ -103,3 +103,67 @@ def test_bad_landmark_files_get_one_sentence(
     landmarks.write_text(text)
     assert cli.run(["retarget", DEMO, "--landmarks", str(landmarks), "-o", str(tmp_path / "o.csv")]) == 2
     assert says in capsys.readouterr().err
+
+
+def _labels(tmp_path: Path, *frames: int) -> Path:
+    """Label frames of the demo take with half its smile and half its jaw."""
+    weights, named = read_take(demo.BUNDLED).weights, ("jawOpen", "mouthSmileLeft")
+    path = tmp_path / "labels.json"
+    rows = {frame: {name: weights[frame, SHAPE_INDEX[name]] / 2 for name in named} for frame in frames}
+    labels.write(labels.LabelFile(rows), path)
+    return path
+
+
+def test_labelled_frames_bend_the_whole_take(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.run(["retarget", DEMO, "--method", "manifold", "--suggest", "8"]) == 0
+    frames = [int(line) for line in capsys.readouterr().out.split()]
+    assert len(set(frames)) == 8
+    out = tmp_path / "out.csv"
+    arguments = ["retarget", DEMO, "--method", "manifold", "--labels", str(_labels(tmp_path, *frames)), "-o", str(out)]
+    assert cli.run(arguments) == 0
+    before, after = read_take(demo.BUNDLED), read_take(out)
+    for name in ("jawOpen", "mouthSmileLeft"):
+        away = np.abs(after.curve(name) - before.curve(name) / 2).mean()
+        assert away < 0.1 * np.abs(before.curve(name) / 2).mean()
+    untouched = [SHAPE_INDEX["browInnerUp"], SHAPE_INDEX["eyeBlinkLeft"]]
+    np.testing.assert_allclose(after.weights[:, untouched], before.weights[:, untouched], atol=1e-3)
+
+
+def test_suggestions_go_on_from_a_label_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first = ["retarget", DEMO, "--method", "manifold", "--suggest"]
+    assert cli.run([*first, "4"]) == 0
+    four = [int(line) for line in capsys.readouterr().out.split()]
+    assert cli.run([*first, "2", "--labels", str(_labels(tmp_path, *four[:2]))]) == 0
+    assert [int(line) for line in capsys.readouterr().out.split()] == four[2:]
+
+
+def test_markers_and_labels_move_a_head_of_the_label_file(tmp_path: Path) -> None:
+    labels.write(labels.LabelFile({15: {"jawOpen": 0.5}}, BUNDLED), tmp_path / "labels.json")
+    out = tmp_path / "out.csv"
+    arguments = ["--method", "manifold", "--labels", str(tmp_path / "labels.json"), "-o", str(out)]
+    assert cli.run(["retarget", str(_markers(tmp_path)), *arguments]) == 0
+    np.testing.assert_allclose(read_take(out).curve("jawOpen"), 0.5 * np.sin(np.linspace(0, np.pi, 30)), atol=0.1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--labels", "{labels}"], "Add --method manifold"),
+        (["--method", "manifold"], "no labelled frames"),
+        (["--method", "manifold", "--suggest", "0"], "one suggested frame or more"),
+        (["--method", "manifold", "--labels", "{none}"], "could not be read"),
+        (["--method", "manifold", "--labels", "{far}"], "Frame 99999 has a label"),
+        (["--method", "manifold", "--labels", "{far}", "--suggest", "2"], "Frame 99999 has a label"),
+        (["--method", "manifold", "--labels", "{gone}"], "gone.npz is not there"),
+    ],
+)
+def test_unusable_labels_are_one_sentence(
+    arguments: list[str], says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    places = {name: tmp_path / f"{name}.json" for name in ("labels", "none", "far", "gone")}
+    labels.write(labels.LabelFile({3: {"jawOpen": 1.0}}), places["labels"])
+    labels.write(labels.LabelFile({99_999: {"jawOpen": 1.0}}), places["far"])
+    labels.write(labels.LabelFile({3: {"jawOpen": 1.0}}, Path("gone.npz")), places["gone"])
+    out = tmp_path / "out.csv"
+    assert cli.run(["retarget", DEMO, *[part.format(**places) for part in arguments], "-o", str(out)]) == 2
+    assert says in capsys.readouterr().err and not out.exists()

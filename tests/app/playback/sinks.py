@@ -15,6 +15,8 @@ BLOCK = 256
 class SimulatedSink:
     """A device in simulated time: `run` lets time pass, in which it takes a block whenever one has been played."""
 
+    name = "simulated"
+
     def __init__(self, rate: int, *, latency_s: float = 0.1) -> None:
         self.rate, self.latency_s = rate, latency_s
         self.now = 100.0
@@ -57,6 +59,8 @@ class SimulatedSink:
 
 class ThreadSink:
     """A device that pulls in real time from a thread of its own, as a real one does."""
+
+    name = "a thread"
 
     def __init__(self, rate: int, channels: int) -> None:
         self.rate = rate

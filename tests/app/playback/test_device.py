@@ -11,16 +11,21 @@ import pytest
 
 from app.playback import device
 
+DEVICES = [
+    {"name": name, "index": index, "default_samplerate": 44_100.0, "max_output_channels": channels}
+    for index, (name, channels) in enumerate([("Microphone", 0), ("Built-in", 2), ("Headset", 2)])
+]
+
 
 class Stream:
     made: ClassVar[list[Stream]] = []
     gone: ClassVar[bool] = False
 
-    def __init__(self, *, samplerate, channels, dtype, latency, callback) -> None:
+    def __init__(self, *, samplerate, channels, dtype, latency, callback, device) -> None:
         if samplerate != 44_100:
             raise module().PortAudioError("Invalid sample rate")
         self.latency, self.active, self.starts, self.callback = latency, False, 0, callback
-        self.channels, self.closed = channels, False
+        self.channels, self.closed, self.device = channels, False, device
         Stream.made.append(self)
 
     def start(self) -> None:
@@ -54,7 +59,7 @@ def portaudio(monkeypatch):
     stand_in.PortAudioError = type("PortAudioError", (Exception,), {})
     stand_in.CallbackStop = type("CallbackStop", (Exception,), {})
     stand_in.OutputStream = Stream
-    stand_in.query_devices = lambda kind: {"default_samplerate": 44_100.0}
+    stand_in.query_devices = lambda kind=None: DEVICES[1] if kind else DEVICES
     monkeypatch.setitem(sys.modules, "sounddevice", stand_in)
     monkeypatch.setattr(Stream, "gone", False)
     monkeypatch.setattr(device.time, "perf_counter", lambda: 500.0)
@@ -65,13 +70,20 @@ def test_a_device_that_refuses_the_rate_is_asked_at_its_own(portaudio) -> None:
     assert device.open_device(48_000, 2).rate == 44_100
 
 
+@pytest.mark.parametrize(("wanted", "found"), [("", 1), ("Headset", 2), ("Microphone", 1), ("unplugged", 1)])
+def test_a_device_is_chosen_by_name_and_where_it_is_gone_the_system_s_own_plays(portaudio, wanted, found) -> None:
+    assert device.names() == ["Built-in", "Headset"]
+    sink = device.open_device(44_100, 2, wanted=wanted)
+    assert (sink.name, Stream.made[-1].device) == (DEVICES[found]["name"], found)
+
+
 @pytest.mark.parametrize("error", [ValueError("no default"), OSError("no PortAudio"), LookupError("odd")])
 def test_no_device_is_none(portaudio, monkeypatch, error) -> None:
-    def refuse(kind: str) -> None:
+    def refuse(kind: str = "") -> None:
         raise error
 
     monkeypatch.setattr(portaudio, "query_devices", refuse)
-    assert device.open_device(48_000, 2) is None
+    assert device.open_device(48_000, 2) is None and device.names() == []
     monkeypatch.setitem(sys.modules, "sounddevice", None)  # not installed
     assert device.open_device(48_000, 2) is None
 

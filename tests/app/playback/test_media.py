@@ -74,14 +74,14 @@ def test_sound_attached_by_hand_wins_over_what_is_found(qtbot, desk, tmp_path) -
     recording(tmp_path / "a.wav")
     open_beside(qtbot, desk, tmp_path / "a.csv")
     with qtbot.waitSignal(desk.session.changed, check_params_cb=lambda c: bool(c & Change.MEDIA), timeout=10_000):
-        desk.media.attach(recording(tmp_path / "other.wav"))
+        desk.media.attach("audio", recording(tmp_path / "other.wav"))
     assert desk.session.audio.path.name == "other.wav"
 
 
 def test_what_cannot_be_read_gives_a_sentence_and_changes_nothing(qtbot, desk, tmp_path) -> None:
     (tmp_path / "bad.wav").write_text("no sound")
     with qtbot.waitSignal(desk.media.failed, timeout=10_000) as told:
-        desk.media.attach(tmp_path / "bad.wav")
+        desk.media.attach("audio", tmp_path / "bad.wav")
     assert told.args[0].startswith("bad.wav") and desk.session.audio is None
 
 
@@ -106,7 +106,7 @@ def test_without_a_device_the_wall_tells_the_time(qtbot, tmp_path) -> None:
     transport = Transport(session)
     media = Media(session, transport, lambda rate, channels: None)
     with qtbot.waitSignal(session.changed, check_params_cb=lambda c: bool(c & Change.MEDIA), timeout=10_000):
-        media.attach(recording(tmp_path / "a.wav"))
+        media.attach("audio", recording(tmp_path / "a.wav"))
     assert isinstance(transport.clock, WallClock)
     transport.toggle()
     qtbot.waitUntil(lambda: session.playhead > 3, timeout=5_000)

@@ -41,8 +41,7 @@ def test_the_frame_at_the_playhead_is_shown_shifted_by_the_offset(qtbot, panel, 
         assert abs(shown(qtbot, panel) - shade(frame)) <= 3
     session.move_playhead(75)
     assert shown(qtbot, panel) is None  # the video has ended
-    panel.offset.setValue(1.0)
-    assert session.video_offset_s == 1.0
+    session.slide("video", 1.0)
     assert abs(shown(qtbot, panel) - shade(45)) <= 3
     session.attach_video(None)
     assert panel.isHidden()

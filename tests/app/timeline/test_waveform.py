@@ -10,6 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.session import Session
 from app.theme import DARK
+from app.timeline.flags import FLAGS_PX
 from app.timeline.panel import AUDIO_PX, RULER_PX, SPANS_PX, Timeline
 from app.timeline.waveform import draw_waveform
 from engine.formats.audio import Audio
@@ -67,10 +68,11 @@ def timeline(qtbot: QtBot) -> Timeline:
 
 def test_the_lane_is_there_only_while_there_is_sound(timeline: Timeline) -> None:
     session = timeline._session
-    assert timeline.sizeHint().height() == RULER_PX + SPANS_PX
+    assert timeline.sizeHint().height() == RULER_PX + SPANS_PX + FLAGS_PX
     before = timeline.grab().toImage()
-    session.attach_audio(Audio(np.ones(RATE, np.float32) * 0.5, RATE), offset_s=5.0)
-    assert timeline.sizeHint().height() == RULER_PX + AUDIO_PX + SPANS_PX
+    session.attach_audio(Audio(np.ones(RATE, np.float32) * 0.5, RATE))
+    session.slide("audio", 5.0)
+    assert timeline.sizeHint().height() == RULER_PX + AUDIO_PX + SPANS_PX + FLAGS_PX
     image = timeline.grab().toImage()
     middle = RULER_PX + AUDIO_PX // 2
     quiet = QColor(DARK.quiet)

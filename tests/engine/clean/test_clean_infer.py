@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.clean.infer import Cleaner, CleanState, bundled
+from engine.clean.infer import FROZEN_S, LEAD_S, SLOW_PER_S, Cleaner, CleanState, bundled
 from engine.take import SHAPES
 
 RNG = np.random.default_rng(1)
@@ -23,6 +23,36 @@ def test_a_constant_face_comes_to_rest(fps: float) -> None:
     shown = np.array([state.shown for state in follow(bundled(), [POSE] * round(40 * fps), fps)])
     assert np.abs(shown[-round(10 * fps) :] - shown[-1]).max() < 1e-3
     assert np.abs(shown[-1] - POSE).max() < 0.25
+
+
+def test_an_hour_of_one_and_the_same_frame_does_not_drift() -> None:
+    frozen = follow(bundled(), [POSE] * 60 * 90)
+    stands = frozen[60 * 60 :]
+    assert all(np.array_equal(state.shown, stands[0].shown) for state in stands)  # to the last bit
+    # what is left of each step only shrinks, so nothing moves in the rest of the hour either
+    left = np.exp(-(stands[0].frozen_s - FROZEN_S) / FROZEN_S) * 3600 * 60
+    assert left < 1e-3 and np.abs(stands[0].velocity).max() == 0
+    hour = follow(bundled(), [POSE] * 7200, fps=2.0)  # and a whole hour in long steps
+    assert np.abs(hour[-1].shown - hour[120].shown).max() < 1e-3
+
+
+@pytest.mark.parametrize("fps", [24.0, 60.0, 120.0])
+def test_moving_shapes_are_shown_ahead_and_resting_ones_are_not(fps: float) -> None:
+    ramp = np.clip(np.arange(round(0.5 * fps)) / fps, 0, 1)[:, None] * 1.6 * (POSE > 0.3)
+    for state in follow(bundled(), [*ramp.astype(np.float32)], fps):
+        slow = np.abs(state.velocity) <= SLOW_PER_S
+        assert not state.ahead[slow].any()
+        assert (state.ahead[~slow] * state.velocity[~slow] > 0).all()
+        assert (np.abs(state.ahead) <= LEAD_S * np.abs(state.velocity)).all()
+    still = follow(bundled(), [POSE] * 200, fps)[-1]
+    assert not still.ahead.any()
+
+
+def test_the_leap_that_ends_a_lost_run_is_not_shown_ahead() -> None:
+    frames = [*[MOVING[0]] * 60, *[None] * 30, 1 - MOVING[0]]
+    *_, before, after = follow(bundled(), frames)
+    np.testing.assert_array_equal(after.ahead, before.ahead)
+    assert np.abs(after.velocity).max() > 1.0
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 100.0, -100.0])

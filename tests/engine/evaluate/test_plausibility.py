@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.character import bundled
-from engine.evaluate.plausibility import EXCLUSIVE, STRETCH, impossible, recorded
+from engine.evaluate.plausibility import STRETCH, recorded
 from engine.performance.corpus import synthetic_performances
 from engine.take import SHAPE_INDEX, SHAPES
 
@@ -25,18 +25,3 @@ def test_distance_is_that_of_the_surface() -> None:
     open_jaw[:, jaw] = 0.5
     expected = 0.5 * np.sqrt((deltas[jaw, moving] ** 2).sum(axis=1).mean())
     assert recorded([still], COLUMNS).distance_mm(open_jaw)[0] == pytest.approx(expected, rel=1e-3)
-
-
-def test_every_listed_pair_is_found_on_its_own_side() -> None:
-    for first, second, reason in EXCLUSIVE:
-        weights = np.zeros((1, len(SHAPES)))
-        one, other = (name if name in SHAPE_INDEX else f"{name}Left" for name in (first, second))
-        weights[0, [SHAPE_INDEX[one], SHAPE_INDEX[other]]] = 0.6
-        assert impossible(weights)[0], reason
-    weights = np.zeros((1, len(SHAPES)))
-    weights[0, [SHAPE_INDEX["eyeBlinkLeft"], SHAPE_INDEX["eyeWideRight"]]] = 1.0
-    assert not impossible(weights)[0]
-
-
-def test_a_performance_is_possible() -> None:
-    assert impossible(synthetic_performances(0.5, seed=2)[0]).mean() < 0.01

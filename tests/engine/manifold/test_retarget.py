@@ -6,8 +6,19 @@ import pytest
 from engine.character import bundled
 from engine.errors import EditError
 from engine.formats import read_take
-from engine.manifold.retarget import Retargeter, Settings, retarget_points, retarget_weights, suggest_frames
+from engine.manifold.patches import alignment, similar
+from engine.manifold.retarget import (
+    Retargeter,
+    Settings,
+    coordinates,
+    from_labels,
+    retarget_points,
+    retarget_weights,
+    scaled_to,
+    suggest_frames,
+)
 from engine.performance import demo
+from engine.take import SHAPE_INDEX, SHAPES, Take
 
 
 def landmarks(frames: slice) -> tuple[np.ndarray, np.ndarray]:
@@ -84,6 +95,29 @@ def test_weights_of_a_target_with_shapes() -> None:
     assert len(made) == len(take) and made.fps == take.fps
 
 
+def test_a_few_labels_tell_the_gain_of_every_point() -> None:
+    """Over a source that moves everywhere: gains are found to within their ridge, and no gain is no change."""
+    rng = np.random.default_rng(3)
+    rest, away = rng.normal(size=(17, 3)), rng.normal(size=(200, 17, 3))
+    target = rest + away * rng.uniform(0.4, 1.8, (17, 3))
+    frames = np.arange(0, 200, 20)
+    found = scaled_to(rest + away, rest, frames, target[frames])
+    assert np.abs(found - target).mean() < 0.2 * np.abs(rest + away - target).mean()
+    np.testing.assert_allclose(scaled_to(target, rest, frames, target[frames]), target, atol=1e-12)
+
+
+def test_a_label_may_name_some_shapes_and_leaves_the_others_as_they_are() -> None:
+    take = read_take(demo.BUNDLED)
+    jaw = SHAPE_INDEX["jawOpen"]
+    frames = suggest_frames(take.weights, 8)
+    made = retarget_weights(take, {frame: {"jawOpen": 0.5 * take.weights[frame, jaw]} for frame in frames})
+    others = np.arange(len(SHAPES)) != jaw
+    np.testing.assert_allclose(made.weights[:, others], np.clip(take.weights[:, others], 0, None), atol=1e-3)
+    assert np.abs(made.weights[:, jaw] - 0.5 * take.weights[:, jaw]).mean() < 0.02
+    with pytest.raises(EditError, match="no shape called 'grin'"):
+        retarget_weights(take, {3: {"grin": 1.0}})
+
+
 @pytest.mark.parametrize(
     ("labelled", "says"), [([], "no labelled frame"), ([3, 3], "twice"), ([500], "Frame 500"), ([-1], "Frame -1")]
 )
@@ -98,3 +132,38 @@ def test_a_source_with_gaps_is_refused() -> None:
     source[3, 2] = np.nan
     with pytest.raises(EditError, match="finite"):
         Retargeter(source, source, np.array([0]))
+
+
+def test_the_uncertainty_is_the_root_of_the_inverse_s_diagonal() -> None:
+    rng = np.random.default_rng(5)
+    source = rng.random((30, 6)).cumsum(axis=0)
+    retargeter = Retargeter(source, source, np.array([3, 20]), Settings(neighbours=8, dimension=3))
+    energy = alignment(coordinates(source), similar(coordinates(source), size=8), dimension=3, stiffness=1e-4)
+    held = np.zeros(30)
+    held[[3, 20]] = 1e3
+    plain = np.sqrt(np.diag(np.linalg.inv(energy.toarray() + np.diag(held))))
+    np.testing.assert_allclose(retargeter.uncertainty(), plain, rtol=1e-5)
+    assert plain[[3, 20]].max() < np.median(plain)
+
+
+def test_a_solve_from_labels_tells_its_share_and_stops_when_asked(random_take: Take) -> None:
+    class Enough(Exception):
+        pass
+
+    def tell(share: float) -> None:
+        assert 0 <= share <= 1
+        raise Enough
+
+    with pytest.raises(Enough):
+        from_labels(random_take, {3: random_take.weights[3]}, tell=tell)
+
+
+def test_frames_that_are_loosely_held_are_those_that_come_out_wrong() -> None:
+    weights = read_take(demo.BUNDLED).weights[:250]
+    rng = np.random.default_rng(1)
+    gain = 1 + 0.8 * np.tanh((weights - weights.mean(axis=0)) @ rng.normal(0, 0.5, (52, 52)))
+    truth = np.clip(weights * gain @ (np.eye(52) + rng.normal(0, 0.08, (52, 52))), 0, 1)
+    made = from_labels(Take(weights, 30.0), {frame: truth[frame] for frame in suggest_frames(weights, 4)})
+    error = np.sqrt(((made.take.weights - truth) ** 2).mean(axis=1))
+    assert np.corrcoef(np.argsort(np.argsort(made.uncertainty)), np.argsort(np.argsort(error)))[0, 1] > 0.8
+    assert (error < error[np.argmax(made.uncertainty)]).mean() > 0.9

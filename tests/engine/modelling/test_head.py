@@ -153,6 +153,7 @@ def test_saved_character_loads_equal(bundled: Character, tmp_path: Path) -> None
     path = tmp_path / "head.npz"
     character.save(replace(bundled, name="other"), path)
     again = character.load(path)
+    assert again.name == "other"
     np.testing.assert_array_equal(again.neutral, bundled.neutral)
     np.testing.assert_array_equal(again.deltas, bundled.deltas)  # already half floats
     np.testing.assert_array_equal(again.colours, bundled.colours)

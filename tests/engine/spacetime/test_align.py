@@ -45,8 +45,22 @@ def test_removing_and_applying_head_motion_are_inverse() -> None:
 
 def test_angles_rebuild_the_rotation() -> None:
     motion = _motion()
-    rebuilt = Rotation.from_euler("YXZ", motion.angles()).as_matrix()
+    rebuilt = Rotation.from_euler("YXZ", motion.angles() * [-1, 1, -1]).as_matrix()
     np.testing.assert_allclose(rebuilt, motion.rotations, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("column", "axis", "degrees"),
+    [(0, [0, 1, 0], -20), (1, [1, 0, 0], 20), (2, [0, 0, 1], -20)],
+    ids=["to the character's right", "down", "to the left shoulder"],
+)
+def test_turns_have_the_signs_of_live_link_face(column: int, axis: list[int], degrees: float) -> None:
+    """With X to the character's left, Y up and Z to the front: where nose and crown go tells which turn it was."""
+    turn = Rotation.from_rotvec(np.radians(degrees) * np.array(axis)).as_matrix()
+    nose, crown = turn @ [0, 0, 1], turn @ [0, 1, 0]
+    assert [-nose[0], -nose[1], crown[0]][column] > 0.3
+    angles = procrustes((FACE @ turn.T)[None], FACE).angles()[0]
+    np.testing.assert_allclose(np.degrees(angles), 20 * np.eye(3)[column], atol=1e-9)
 
 
 def test_a_moving_jaw_does_not_turn_the_head() -> None:

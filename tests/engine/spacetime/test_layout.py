@@ -68,3 +68,15 @@ def test_a_head_without_landmarks_is_told_which_it_lacks() -> None:
 def test_a_marker_that_is_not_there_is_named() -> None:
     with pytest.raises(EditError, match="'elbow'"):
         standard(bundled()).pick(["nose_tip", "elbow"])
+
+
+def test_upper_and_lower_lip_keep_their_markers_where_mouth_corners_hang() -> None:
+    character = bundled()
+    hanging = character.neutral.copy()
+    hanging[:, 1] -= 10 * (np.clip(np.abs(hanging[:, 0]) / 25, 0, 1)) ** 4
+    drooping = replace(character, neutral=hanging)
+    layout = standard(drooping)
+    way = np.linalg.norm(layout.deltas(drooping)[SHAPES.index("jawOpen")], axis=1)
+    by_name = dict(zip(layout.names, way, strict=True))
+    for side in ("left", "right"):
+        assert by_name[f"lip_upper_{side}"] < by_name[f"mouth_{side}"] < by_name[f"lip_lower_{side}"]

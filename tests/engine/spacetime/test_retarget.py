@@ -14,7 +14,7 @@ from engine.performance import demo
 from engine.spacetime.align import HeadMotion
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import standard
-from engine.spacetime.retarget import Matching, correspond, retarget
+from engine.spacetime.retarget import Matching, correspond, match, retarget
 from engine.spacetime.source import Source, bridge, from_markers, from_take, shown
 from engine.take import SHAPE_INDEX, Array, Take
 
@@ -154,3 +154,23 @@ def test_captures_that_cannot_be_used_say_why(played: Source, change: object, sa
 def test_a_neutral_frame_outside_the_capture_is_refused(played: Source) -> None:
     with pytest.raises(EditError, match="Frame 500 is not within the capture"):
         from_markers(_captured(played), neutral_frame=500)
+
+
+def test_a_jaw_at_its_bound_is_solved_around_not_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The source opens its jaw further than the target can; cutting it off would leave the rest as it was."""
+    talk = np.zeros((60, 52))
+    phase = np.sin(np.linspace(0, 3 * np.pi, 60)) ** 2
+    talk[:, SHAPE_INDEX["jawOpen"]], talk[:, SHAPE_INDEX["mouthClose"]] = phase, 0.4 * phase
+    deltas = bundled().deltas.copy()
+    deltas[SHAPE_INDEX["jawOpen"]] *= np.float32(0.6)
+    stiff = replace(bundled(), deltas=deltas)
+    pair = correspond(from_take(Take(talk, 30.0), bundled()), stiff)
+
+    def speed_error() -> float:
+        weights = match(pair, 30.0, Matching())
+        assert weights.min() >= 0 and weights.max() <= 1
+        return float((np.diff(weights @ pair.basis.T - pair.motion, axis=0) ** 2).sum())
+
+    solved = speed_error()
+    monkeypatch.setattr("engine.spacetime.retarget.JAW_ROUNDS", 0)
+    assert solved < 0.8 * speed_error()

@@ -201,3 +201,42 @@ def test_any_changed_byte_gives_a_character_or_a_sentence(place: int, value: int
         gltf.read(path)
     except FormatError as error:
         assert "\n" not in str(error)
+
+
+def _places(part: Any) -> list[tuple[Any, Any]]:
+    """Return every container and key of a document, however deep."""
+    keys = list(part) if isinstance(part, dict) else range(len(part)) if isinstance(part, list) else []
+    return [(part, key) for key in keys] + [place for key in keys for place in _places(part[key])]
+
+
+WHOLE = st.sampled_from([-1, 0, 1, 2, 7, 255, 2**16, 2**31 - 1, 2**31, 2**53, 2**63, 2**64, 10**30])
+STRANGE = st.one_of(
+    WHOLE,
+    st.sampled_from(
+        [None, True, 0.5, -1e308, float("nan"), float("inf"), "", "0", "../../x", "data:;base64,!", [], {}]
+    ),
+    st.lists(st.lists(WHOLE, max_size=2), max_size=2),
+)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(changes=st.lists(st.tuples(st.integers(0, 10_000), STRANGE), min_size=1, max_size=3))
+def test_any_changed_value_gives_a_character_or_a_sentence_and_little_memory(
+    changes: list[tuple[int, Any]], tmp_path: Path
+) -> None:
+    scene, binary = document()
+    for number, value in changes:
+        places = _places(scene)
+        if places:
+            part, key = places[number % len(places)]
+            part[key] = value
+    path = glb(tmp_path / "a.glb", scene, binary)
+    tracemalloc.start()
+    try:
+        gltf.read(path)
+    except FormatError as error:
+        assert "\n" not in str(error) and len(str(error)) < 400
+    finally:
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    assert peak < 64e6

@@ -1,0 +1,77 @@
+"""`retake flags`: what a reviewer should look at."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from engine.formats import read_take
+from engine.take import timecode
+
+if TYPE_CHECKING:
+    from engine.quality import Seen
+    from engine.speech.lane import VisemeLane
+    from engine.take import Take
+
+COLUMNS = ("frame", "stop", "time", "kind", "weight", "sentence")
+
+
+def flags(
+    take: Annotated[Path, typer.Argument(help="A take, or a project with its edits.", show_default=False)],
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="A CSV to write; the screen without it.")] = None,
+    original: Annotated[
+        Path | None, typer.Option(help="The take before its edits: where did lips meet that now do not?")
+    ] = None,
+    visemes: Annotated[
+        Path | None, typer.Option(help="What is said when, so that lips which should meet are looked for.")
+    ] = None,
+    visemes_offset: Annotated[float, typer.Option(help="Second of the take at which that file begins.")] = 0.0,
+) -> None:
+    """List frames to look at: spikes, frozen and lost ones, impossible faces, lips that stay open, what was not reached."""
+    from engine.formats.atomic import write_bytes
+    from engine.quality import flags_of
+
+    seen = _seen(take, read_take(original) if original else None, _lane(visemes, visemes_offset))
+    found = flags_of(seen)
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(COLUMNS)
+    for flag in found:
+        time = timecode(flag.start / seen.fps, seen.fps)
+        table.writerow((flag.start, flag.stop, time, flag.kind, f"{flag.weight:.2f}", flag.sentence))
+    if out is None:
+        typer.echo(text.getvalue(), nl=False)
+    else:
+        write_bytes(out, [text.getvalue().encode()])
+        typer.echo(f"{len(found)} flags; wrote {out}")
+
+
+def _lane(path: Path | None, offset_s: float) -> VisemeLane | None:
+    from engine.formats.cues import read_cues
+    from engine.speech.lane import attached, shifted
+
+    return shifted(attached(read_cues(path), path.name), offset_s) if path is not None else None
+
+
+def _seen(path: Path, original: Take | None, lane: VisemeLane | None) -> Seen:
+    """Return what there is to look at; a project brings its own original, asked curves and visemes."""
+    from engine.project import ENDING, Project, replay
+    from engine.quality import seen_of
+
+    if path.suffix.lower() != ENDING:
+        return seen_of(read_take(path), original, visemes=lane)
+    project = Project.open(path)
+    try:
+        state = replay(project.contents)
+        return seen_of(state.take, original or project.contents.original, state.asked, lane or state.visemes)
+    finally:
+        project.close()
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(flags)

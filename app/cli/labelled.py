@@ -1,0 +1,62 @@
+"""`retake retarget --method manifold`: a performance onto another head by frames at which a person posed it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from engine.errors import EditError
+
+if TYPE_CHECKING:
+    from engine.character import Character
+    from engine.formats.labels import LabelFile
+    from engine.spacetime.source import Source
+    from engine.take import Array, Take
+
+LABEL_HELP = "For manifold: frames and how the target stands there, in JSON or CSV."
+SUGGEST_HELP = "For manifold: print this many frames worth labelling next, and write nothing."
+
+
+def suggest(performance: Source, count: int, labels: Path | None) -> list[int]:
+    """Return frames worth labelling, best first, beside those of a label file; raises `EngineError`."""
+    from engine.manifold.retarget import suggest_frames
+
+    if count < 1:
+        raise EditError("Ask for one suggested frame or more.")
+    known = list(_read(labels).labels) if labels is not None else []
+    if known and max(known) >= len(performance):
+        raise EditError(f"Frame {max(known)} has a label; the source has {len(performance)} frames.")
+    return suggest_frames(_features(performance), count, labelled=known)
+
+
+def retarget(performance: Source, character: Path | None, labels: Path | None) -> tuple[Take, Character]:
+    """Return the take that the labels make of a performance, and the head it is for; raises `EngineError`."""
+    from engine.character import bundled
+    from engine.formats.characters.opening import character_of
+    from engine.manifold.retarget import retarget_weights
+    from engine.spacetime.retarget import retarget as carry
+
+    if labels is None:
+        raise EditError("There are no labelled frames.", "Name a file of them with --labels; --suggest says which.")
+    asked = _read(labels)
+    path = character or asked.target
+    target = bundled() if path is None else character_of(path)
+    guess = performance.take if performance.take.weights.any() else carry(performance, target)
+    poses: dict[int, Mapping[str, float] | Array] = dict(asked.labels)
+    return retarget_weights(guess, poses, source=_features(performance)), target
+
+
+def _read(path: Path) -> LabelFile:
+    from engine.formats import labels
+
+    return labels.read(path)
+
+
+def _features(performance: Source) -> Array:
+    """Return what tells frames apart, (frames, D): weights where they are known, else where the markers are."""
+    from engine.spacetime.source import bridge
+
+    if performance.take.weights.any():
+        return performance.take.weights
+    return bridge(performance.displacements)[0].reshape(len(performance), -1)

@@ -1,0 +1,173 @@
+"""What is carried where, and the work of carrying it, off the GUI thread."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from engine.character import Character, bundled
+from engine.errors import EditError
+from engine.formats.characters.opening import character_of
+from engine.spacetime.layout import Layout, named, standard
+from engine.spacetime.retarget import Matching, retarget
+from engine.spacetime.source import Source, bridge, from_take
+from engine.take import SHAPE_INDEX, Array, Take
+
+Pose = Mapping[str, float]
+
+
+class Stopped(Exception):
+    """The user wants no more of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Performance:
+    """What is carried: a take on its head, or a capture's markers.
+
+    Attributes
+    ----------
+    take : frame rate, length, and the weights where there is no capture
+    head : whose head the take is on
+    capture : markers, in place of the take's weights
+    """
+
+    take: Take
+    head: Character
+    capture: Source | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """The head that a performance is carried to.
+
+    Attributes
+    ----------
+    head : None where none was chosen
+    path : the file it came from; None for the bundled one
+    places : vertex by marker name
+    by_hand : names of those that were placed by hand
+    labels : what the head does at a few frames, weights by shape name
+    """
+
+    head: Character | None = None
+    path: Path | None = None
+    places: Mapping[str, int] = field(default_factory=dict)
+    by_hand: frozenset[str] = frozenset()
+    labels: Mapping[int, Pose] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Carry:
+    """A wish to carry frames of a performance to a head.
+
+    Attributes
+    ----------
+    performance, target, matching : what, where, how
+    frames : half-open; all of them where None
+    from_labels : by the target's labels instead of by markers
+    stop : set to stop it
+    """
+
+    performance: Performance
+    target: Target
+    matching: Matching
+    frames: tuple[int, int] | None = None
+    from_labels: bool = False
+    stop: threading.Event = field(default_factory=threading.Event)
+
+
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """What came of it: the weights of frames from `start`, and for labels how loosely they hold each frame."""
+
+    take: Take
+    start: int = 0
+    uncertainty: Array | None = None
+
+    def weights_at(self, frame: int) -> Array | None:
+        """Return the weights of a frame, (52,), where it is among them."""
+        inside = self.start <= frame < self.start + len(self.take)
+        return np.asarray(self.take.weights[frame - self.start]) if inside else None
+
+
+class Carrier:
+    """Carries; remembers the markers of the last performance, for which a short range is asked again and again."""
+
+    def __init__(self) -> None:
+        self._known: tuple[Performance, Source] | None = None
+
+    def source(self, performance: Performance) -> Source:
+        """Return the marker motion of a performance."""
+        if performance.capture is not None:
+            return performance.capture
+        if self._known is None or self._known[0] is not performance:
+            self._known = (performance, from_take(performance.take, performance.head))
+        return self._known[1]
+
+    def __call__(self, wish: Carry, progress: Callable[[float], None]) -> Carried:
+        """Return what the target does; raises `Stopped` when it is told to, else `EngineError`."""
+
+        def tell(share: float) -> None:
+            if wish.stop.is_set():
+                raise Stopped
+            progress(share)
+
+        if wish.from_labels:
+            return self._from_labels(wish, tell)
+        start, stop = wish.frames or (0, len(wish.performance.take))
+        part = self.source(wish.performance).part(start, stop)
+        return Carried(self._matched(wish, part, tell), start)
+
+    def _matched(self, wish: Carry, part: Source, tell: Callable[[float], None]) -> Take:
+        assert wish.target.head is not None
+        layout: Layout | None = named(wish.target.places) if wish.target.places else None
+        return retarget(part, wish.target.head, layout=layout, matching=wish.matching, tell=tell)
+
+    def _from_labels(self, wish: Carry, tell: Callable[[float], None]) -> Carried:
+        from engine.manifold.retarget import from_labels
+
+        base, points = wish.performance.take, None
+        capture = wish.performance.capture
+        if capture is not None:  # the labels correct what the markers tell
+            base = self._matched(wish, capture, lambda share: tell(share / 2))
+            points = points_of(wish.performance)
+        labels = {frame: posed(base.weights[frame], pose) for frame, pose in wish.target.labels.items()}
+        made = from_labels(base, labels, source=points, tell=tell)
+        return Carried(made.take, 0, made.uncertainty)
+
+
+def points_of(performance: Performance) -> Array:
+    """Return what tells the frames of a performance apart, (frames, D)."""
+    if performance.capture is None:
+        return performance.take.weights
+    return bridge(performance.capture.displacements)[0].reshape(len(performance.take), -1)
+
+
+def posed(weights: Array, pose: Pose) -> Array:
+    """Return weights, (52,), with some of them replaced, by name."""
+    changed = weights.copy()
+    for name, value in pose.items():
+        changed[SHAPE_INDEX[name]] = value
+    return changed
+
+
+def opened(path: Path | None) -> Target:
+    """Return a head with its 54 markers placed; with none where it lacks the landmarks for them."""
+    head = bundled() if path is None else replace(character_of(path), name=path.stem)
+    try:
+        layout = standard(head)
+    except EditError:
+        return Target(head, path)
+    return Target(head, path, dict(zip(layout.names, layout.vertices.tolist(), strict=True)))
+
+
+def with_place(target: Target, name: str, vertex: int | None) -> Target:
+    """Return the target with a marker placed by hand, or taken away."""
+    places = {each: at for each, at in target.places.items() if each != name or vertex is not None}
+    if vertex is None:
+        return replace(target, places=places, by_hand=target.by_hand - {name})
+    return replace(target, places={**places, name: vertex}, by_hand=target.by_hand | {name})

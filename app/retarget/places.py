@@ -1,0 +1,86 @@
+"""Which vertex of the target carries which marker: a list, and clicks on the target's face."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QCheckBox, QListWidget, QListWidgetItem, QPushButton
+
+from app.retarget.placing import Placing
+from app.retarget.retargeting import Retargeting
+from app.section import Section, quiet
+from app.session import Session
+
+LIST_PX = 190
+
+
+class PlacesSection(Section):
+    """Lists the source's markers; the chosen one goes where the target is clicked.
+
+    Parameters
+    ----------
+    session : whose tool is at work
+    retargeting, placing : keep the places, and change them
+
+    Attributes
+    ----------
+    show_dots : whether the markers are drawn on both heads
+    list : of markers, in the source's order
+    rest_button, remove_button, save_button, read_button : for the window's actions
+    """
+
+    tools = frozenset({"retarget"})
+
+    def __init__(self, session: Session, retargeting: Retargeting, placing: Placing) -> None:
+        super().__init__(session, "Markers")
+        self._retargeting, self._placing = retargeting, placing
+        self.show_dots = QCheckBox("Show and place")
+        self.show_dots.setToolTip("Draw the markers on both heads, and place them by clicking the target")
+        self.column.addWidget(self.show_dots)
+        self._facts = quiet("")
+        self.column.addWidget(self._facts)
+        self.list = QListWidget()
+        self.list.setFixedHeight(LIST_PX)
+        self.list.setAccessibleName("Markers")
+        self.list.currentItemChanged.connect(self._choose)
+        self.column.addWidget(self.list)
+        self.rest_button, self.remove_button = QPushButton("Place the others"), QPushButton("Remove")
+        self.rest_button.setToolTip("Markers that were not placed by hand follow those that were")
+        self.save_button, self.read_button = QPushButton("Save…"), QPushButton("Read…")
+        self.side_by_side(self.rest_button, self.remove_button)
+        self.side_by_side(self.save_button, self.read_button)
+        self._inner = (self.list, self.rest_button, self.remove_button, self.save_button, self.read_button)
+        self.show_dots.toggled.connect(lambda _: self._retargeting.changed.emit())
+        retargeting.changed.connect(self.show_all)
+        self.show_all()
+
+    def show_all(self) -> None:
+        """Show the markers as they are."""
+        names, target = self._retargeting.names, self._retargeting.target
+        shown = self.show_dots.isChecked() and target.head is not None
+        self.setEnabled(target.head is not None)
+        for widget in self._inner:
+            widget.setVisible(shown)
+        placed = sum(name in target.places for name in names)
+        self._facts.setText(
+            f"{placed} of {len(names)} on the target, {len(target.by_hand)} by hand."
+            if target.head is not None
+            else "Choose a target first."
+        )
+        with QSignalBlocker(self.list):
+            if [self.list.item(row).data(0x100) for row in range(self.list.count())] != list(names):
+                self.list.clear()
+                for name in names:
+                    item = QListWidgetItem(self.list)
+                    item.setData(0x100, name)
+            for row, name in enumerate(names):
+                state = "by hand" if name in target.by_hand else "" if name in target.places else "not placed"
+                item = self.list.item(row)
+                item.setText(f"{row + 1}  {name}" + (f"  · {state}" if state else ""))
+                item.setForeground(QColor("#E69F00") if state == "not placed" else self.palette().text().color())
+            chosen = self._placing.chosen
+            self.list.setCurrentRow(names.index(chosen) if chosen in names else -1)
+
+    def _choose(self, item: QListWidgetItem | None) -> None:
+        if item is not None:
+            self._placing.choose(item.data(0x100))

@@ -1,0 +1,383 @@
+"""Retargeting under way: what is carried to which head, live around the playhead and whole on request."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from PySide6.QtCore import QObject, Signal
+
+from app.background import LatestWins
+from app.commands import EditCommand
+from app.retarget.carry import (
+    Carried,
+    Carrier,
+    Carry,
+    Performance,
+    Stopped,
+    Target,
+    opened,
+    posed,
+)
+from app.retarget.commands import TargetCommand
+from app.session import Change, Session
+from engine.character import Character, bundled
+from engine.formats import markers
+from engine.spacetime.layout import MARKERS
+from engine.spacetime.retarget import Matching
+from engine.spacetime.source import Source, from_markers
+from engine.take import SHAPES, Array
+
+if TYPE_CHECKING:
+    from engine.editing import Patch
+
+BEFORE_FRAMES, AFTER_FRAMES = 8, 24  # of the playhead, that are carried live: playing goes on while more is made
+AHEAD_FRAMES = 12  # how near the end of what is known the playhead may come before more is asked for
+MOVEMENT, LABELS = "movement", "labels"
+KIND = "retarget"  # of the edits that put a take on another head
+
+
+@dataclass(frozen=True, eq=False)
+class Errand:
+    """Work for a background thread, and who gets what it returns."""
+
+    work: Callable[[], Any]
+    then: Callable[[Any], None]
+
+
+class Retargeting(QObject):
+    """Knows source, target and method; keeps what came of it as one undo step.
+
+    Parameters
+    ----------
+    session : whose take is carried, and becomes what was carried
+
+    Attributes
+    ----------
+    target : the head, its markers and labels
+    capture : markers that are carried in place of the take's weights
+    method : MOVEMENT or LABELS
+    matching : how movement is matched
+    result : the whole take as the target plays it, until it is kept or dropped
+    share : how far the solve is, 0..1; None while nothing is solved
+    opening : the name of the file that is being opened, or nothing
+    suggestions : frames that are worth a label, best first
+    draft_pose : weights of the target that were moved at the playhead
+    """
+
+    changed = Signal()
+    drawn = Signal()  # other weights, all else alike
+    progress = Signal(float)
+    failed = Signal(str, str)
+    capture_opened = Signal(object)  # a Take of the capture's length
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self.target, self.capture = Target(), None
+        self.method, self.matching = MOVEMENT, Matching()
+        self.result: Carried | None = None
+        self.live: Carried | None = None
+        self.share: float | None = None
+        self.opening = ""
+        self.draft_pose: dict[str, float] = {}
+        self.suggestions: list[int] = []
+        self._capture_path: Path | None = None
+        self._performance: Performance | None = None
+        self._solving: Carry | None = None
+        self._live_for: tuple[object, ...] = ()
+        self._live_span = (0, 0)
+        self._carrier, self._live_carrier = Carrier(), Carrier()
+        self._whole, self._short = (LatestWins(_run, name=name) for name in ("retarget", "retarget live"))
+        for thread in (self._whole, self._short):
+            thread.done.connect(self._deliver)
+            thread.failed.connect(self._refused)
+        self.progress.connect(self._advance)
+        self._heads: dict[str, Character | None] = {"": None}  # by path; the bundled one has none
+        session.changed.connect(self._on_change)
+        session.undo.indexChanged.connect(self._follow)
+
+    # --- what there is
+
+    capture: Source | None
+
+    @property
+    def performance(self) -> Performance:
+        """What is carried."""
+        if self._performance is None:
+            session = self._session
+            self._performance = Performance(session.take, session.character or bundled(), self.capture)
+        return self._performance
+
+    @property
+    def ready(self) -> bool:
+        """Whether there is a source and another head to carry it to."""
+        head = self.target.head
+        return head is not None and (self.capture is not None or head is not self.performance.head)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The source's markers."""
+        return self.capture.names if self.capture is not None else MARKERS
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is being worked out."""
+        return self._whole.idle and self._short.idle
+
+    def face_at(self, frame: int) -> Array | None:
+        """Return the weights of the target at a frame, (52,), as far as they are known."""
+        if not self.ready:
+            return None
+        label = self.label_at(frame)
+        base = None if self.result is None else self.result.weights_at(frame)
+        if base is None and self.method == LABELS and self.capture is None:
+            base = np.asarray(self._session.take.weights[frame])
+        if base is None and self.live is not None:
+            nearest = int(np.clip(frame, self.live.start, self.live.start + len(self.live.take) - 1))
+            base = self.live.weights_at(nearest)
+        if base is None:
+            base = np.zeros(len(SHAPES))
+        return posed(base, label) if self.method == LABELS else base
+
+    def label_at(self, frame: int) -> dict[str, float]:
+        """Return the label of a frame with what is being posed there, weights by shape name."""
+        posing = self.draft_pose if frame == self._session.playhead else {}
+        return {**self.target.labels.get(frame, {}), **posing}
+
+    # --- source and target
+
+    def open_markers(self, path: Path, neutral_frame: int = 0) -> None:
+        """Read a capture and carry it in place of the take."""
+
+        def work() -> Source:
+            return from_markers(markers.read(path), neutral_frame=neutral_frame)
+
+        self._open(path.name, work, lambda capture: self._take_capture(capture, path))
+
+    def measure_from(self, frame: int) -> None:
+        """Take another frame of the capture for the face at rest."""
+        if self._capture_path is not None:
+            self.open_markers(self._capture_path, frame)
+
+    def choose_target(self, path: Path | None) -> None:
+        """Carry to the head in a file or folder; None is the bundled one."""
+        name = path.name if path else bundled().name
+        self._open(name, lambda: opened(path), lambda target: self.change_target(target, f"carry to {name}"))
+
+    def _open(self, name: str, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
+        self.cancel()
+        self.opening = name
+        self.submit(work, then)
+        self.changed.emit()
+
+    def submit(self, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
+        """Have work done off the GUI thread; `then` gets what it returns, and errors go to `failed`."""
+        self._whole.submit(Errand(work, then))
+
+    def _take_capture(self, capture: Source, path: Path) -> None:
+        self.opening = ""
+        before = self.capture, self._capture_path
+        self.capture, self._capture_path = capture, path
+        self.capture_opened.emit(capture.take)
+        if self._session.take is not capture.take:  # edits would have been lost, and the user would rather not
+            self.capture, self._capture_path = before
+        elif self.target.head is None:
+            self.choose_target(None)
+        self.changed.emit()
+
+    def change_target(self, target: Target, title: str) -> None:
+        """Put another target in place, or another state of it, as one undo step."""
+        undo = self._session.undo
+        clean = undo.isClean()
+        undo.push(TargetCommand(self._put, self.target, target, title))
+        if clean:
+            undo.setClean()  # nothing of the take has changed
+
+    def _put(self, target: Target) -> None:
+        self.target, self.opening = target, ""
+        self._begin_anew()
+
+    def propose(self, frames: list[int]) -> None:
+        """Show frames that are worth a label."""
+        self.suggestions = frames
+        self.changed.emit()
+
+    # --- carrying
+
+    def use(self, *, method: str | None = None, matching: Matching | None = None) -> None:
+        """Carry by another method, or with other settings."""
+        self.method, self.matching = method or self.method, matching or self.matching
+        self._begin_anew()
+
+    def ask_live(self) -> None:
+        """Carry the frames around the playhead, where they are not known yet."""
+        playhead, frames = self._session.playhead, len(self._session.take)
+        if not self.ready or self.result is not None or self._session.tool != "retarget":
+            return
+        if self.method == LABELS and self.capture is None:
+            return
+        wanted = (self.performance, self.target.places, self.target.head, self.matching)
+        asked = self._live_span if self._live_for == wanted else (0, 0)
+        inside = asked[0] <= playhead and (playhead + AHEAD_FRAMES < asked[1] or asked[1] == frames)
+        if inside and playhead < asked[1]:
+            return
+        span = (max(0, playhead - BEFORE_FRAMES), min(frames, playhead + AFTER_FRAMES + 1))
+        self._live_for, self._live_span = wanted, span
+        wish = Carry(self.performance, self.target, self.matching, span)
+        self._short.submit(Errand(lambda: self._live_carrier(wish, _nobody), lambda made: self._show_live(wish, made)))
+
+    def _show_live(self, wish: Carry, made: Carried) -> None:
+        if wish.performance is self._performance and wish.target.head is self.target.head:
+            self.live = made
+            self.drawn.emit()
+
+    def solve(self) -> None:
+        """Carry the whole take."""
+        if not self.ready:
+            self.failed.emit("There is no other head to carry the take to.", "Choose a target in the Retarget panel.")
+            return
+        if self.method == LABELS and not self.target.labels:
+            self.failed.emit("No frame is labelled yet.", "Suggest frames, pose the target at each, and label it.")
+            return
+        self.cancel()
+        wish = Carry(self.performance, self.target, self.matching, from_labels=self.method == LABELS)
+        self._solving, self.share = wish, 0.0
+        self.submit(lambda: self._stoppable(wish), lambda made: self._finish(wish, made))
+        self.changed.emit()
+
+    def _stoppable(self, wish: Carry) -> Carried | None:
+        try:
+            return self._carrier(wish, self.progress.emit)
+        except Stopped:
+            return None
+
+    def _finish(self, wish: Carry, made: Carried | None) -> None:
+        if wish is self._solving:
+            self._solving, self.share, self.result = None, None, made
+            self.changed.emit()
+
+    def _advance(self, share: float) -> None:
+        if self._solving is not None:
+            self.share = share
+
+    def cancel(self) -> bool:
+        """Stop the solve under way; returns whether there was one."""
+        if self._solving is None:
+            return False
+        self._solving.stop.set()
+        self._solving = self.share = None
+        self.changed.emit()
+        return True
+
+    def keep(self) -> None:
+        """Make what was carried the take, on its head, as one undo step."""
+        result, target = self.result, self.target
+        if result is None or target.head is None:
+            return
+        session, head = self._session, target.head
+        take = session.take
+        inputs = {
+            "target": str(target.path or ""),
+            "source": self.capture.take.name if self.capture else take.name,
+            "method": self.method,
+            "labels": {str(frame): dict(pose) for frame, pose in target.labels.items()},
+            "places": dict(target.places),
+            "alpha": self.matching.alpha,
+            "beta": self.matching.beta,
+            "closure": self.matching.closure,
+        }
+
+        def work() -> Patch:
+            from engine.editing import Patch
+
+            return Patch.between(take, take.with_weights(result.take.weights), (0, len(take)))
+
+        def then(patch: Patch) -> None:
+            if session.take is take:
+                self._heads[str(target.path or "")] = None if head is bundled() else head
+                session.undo.push(EditCommand(session, patch, f"carry to {head.name}", kind=KIND, inputs=inputs))
+
+        self.submit(work, then)
+
+    def show(self, result: Carried | None) -> None:
+        """Show what was carried before, or nothing."""
+        self.result = result
+        self.changed.emit()
+
+    def drop(self) -> None:
+        """Keep nothing of what was carried."""
+        self.result = None
+        self._live_for = ()
+        self.ask_live()
+        self.changed.emit()
+
+    def close(self) -> None:
+        """Stop what is under way and end the threads."""
+        self._session.undo.indexChanged.disconnect(self._follow)  # clearing itself at its end, it would still tell us
+        self.cancel()
+        self._whole.stop()
+        self._short.stop()
+
+    # --- within
+
+    def _begin_anew(self) -> None:
+        """Forget what another source, target or setting came to."""
+        self.cancel()
+        self.result, self.draft_pose = None, {}
+        self.ask_live()
+        self.changed.emit()
+
+    def _follow(self, *_: int) -> None:
+        """Put the take on the head of the last retarget in effect: undone, redone or opened with a project."""
+        session = self._session
+        if session.signalsBlocked():
+            return  # a project is being opened; it says so when it is
+        contents = session.contents()
+        kept = [edit for edit in contents.edits[: contents.position] if edit.kind == KIND]
+        name = str(kept[-1].inputs.get("target", "")) if kept else ""
+        if name not in self._heads:
+            self._heads[name] = None  # where it cannot be read, once is enough
+            self.submit(lambda: opened(Path(name)), lambda target: self._found(name, target))
+        elif self._heads[name] is not session.character:
+            session.play_on(self._heads[name])
+
+    def _found(self, name: str, target: Target) -> None:
+        self._heads[name] = target.head
+        self._follow()
+
+    def _deliver(self, errand: Errand, result: Any) -> None:
+        errand.then(result)
+
+    def _refused(self, request: object, sentence: str, advice: str) -> None:
+        self._solving, self.share, self.opening = None, None, ""
+        self.failed.emit(sentence, advice)
+        self.changed.emit()
+
+    def _on_change(self, change: Change) -> None:
+        if change & Change.TAKE:
+            if self.capture is not None and self._session.take is not self.capture.take:
+                self.capture, self._capture_path = None, None
+            self.target, self.suggestions = replace(self.target, labels={}), []
+            self._follow()
+        if change & (Change.TAKE | Change.CURVES | Change.CHARACTER):
+            self._performance, self.live, self._live_for = None, None, ()
+            self._begin_anew()
+        elif change & Change.PLAYHEAD:
+            self.draft_pose = {}
+            self.ask_live()
+            self.drawn.emit()
+        elif change & Change.TOOL:
+            self.ask_live()
+            self.changed.emit()
+
+
+def _run(errand: Errand) -> Any:
+    return errand.work()
+
+
+def _nobody(_: float) -> None:
+    pass

@@ -1,0 +1,103 @@
+"""The actions about the program itself: settings, which apply at once, the list of keys, and what this is."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import QMessageBox, QWidget
+
+from app import theme
+from app.actions import ACTIONS, keys_of
+from app.menus import Menus
+from app.playback.media import Media
+from app.settings import Settings
+from app.settings_dialog import SettingsDialog
+
+
+class SettingsActions(QObject):
+    """Each public method without arguments is an action of the table.
+
+    Parameters
+    ----------
+    settings : what is remembered
+    menus, media : what settings change
+    window : the parent of the dialogs
+    """
+
+    themed = Signal(object)  # Palette
+    counted = Signal(bool)  # whether time is told in frames
+
+    def __init__(self, settings: Settings, menus: Menus, media: Media, window: QWidget) -> None:
+        super().__init__()
+        self._settings, self._menus, self._media, self._window = settings, menus, media, window
+        self._dialog: SettingsDialog | None = None
+        QGuiApplication.styleHints().colorSchemeChanged.connect(self._follow_system)
+
+    def show_settings(self) -> None:
+        """Show the settings beside the work."""
+        if self._dialog is None:
+            self._dialog = SettingsDialog(self._settings, self._media, self._window)
+            self._dialog.changed.connect(self.apply)
+        self._dialog.show()
+        self._dialog.raise_()
+
+    def light_theme(self) -> None:
+        """Switch between dark and light."""
+        self._settings.theme = "light" if self._menus.actions["light_theme"].isChecked() else "dark"
+        self.apply("theme")
+
+    def show_keys(self) -> None:
+        """List every key."""
+        rows = "".join(
+            f"<tr><td style='padding:2px 16px 2px 0'>{entry.title}</td><td>{', '.join(keys)}</td></tr>"
+            for entry in ACTIONS
+            if (keys := keys_of(entry, self._settings.preset))
+        )
+        extra = "<tr><td>See the original</td><td>hold B</td></tr>"
+        self._tell("Keys", f"<table>{rows}{extra}</table>")
+
+    def about(self) -> None:
+        """Say what this is and which versions it runs on."""
+        from app.about import describe
+
+        self._tell("About Retake", describe().replace("\n", "<br>"))
+
+    def apply_all(self) -> None:
+        """Let every setting take effect."""
+        for name in ("theme", "count", "speaker", "scrubs"):
+            self.apply(name)
+
+    def apply(self, name: str) -> None:
+        """Let a setting take effect."""
+        settings = self._settings
+        if name == "theme":
+            colours = theme.palette(settings.theme)
+            self._menus.actions["light_theme"].setChecked(colours is theme.LIGHT)
+            self.themed.emit(colours)
+        elif name == "count":
+            self.counted.emit(settings.count == "frames")
+        elif name == "preset":
+            self._menus.use_preset(settings.preset)
+        elif name == "speaker":
+            self._media.use_device(settings.speaker)
+        elif name == "scrubs":
+            self._media.scrub_aloud(settings.scrubs)
+
+    def close(self) -> None:
+        """End the dialog's thread."""
+        QGuiApplication.styleHints().colorSchemeChanged.disconnect(self._follow_system)
+        if self._dialog is not None:
+            self._dialog.close_thread()
+
+    def _follow_system(self) -> None:
+        if self._settings.theme == "system":
+            self.apply("theme")
+
+    def _tell(self, title: str, text: str) -> None:
+        box = QMessageBox(self._window)
+        box.setWindowTitle(title)
+        box.setText(text)
+        box.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)  # versions and paths are for copying
+        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        box.setModal(False)
+        box.show()

@@ -1,0 +1,117 @@
+"""The animator carries a take to another head: sees it live, places a marker by a click, solves, keeps, undoes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog
+from pytestqt.qtbot import QtBot
+
+from app.main_window import MainWindow
+from app.preview.picking import places
+from engine.character import bundled, save
+from engine.formats import read_take
+from engine.performance import demo
+from engine.take import Take
+from tests.journeys.conftest import settled
+
+LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+CONTROL, SHIFT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
+FRAME = 20
+
+
+@pytest.fixture
+def broad_head(tmp_path: Path) -> Path:
+    head = bundled()
+    stretch = np.array([1.25, 0.95, 1.1], np.float32)
+    save(replace(head, neutral=head.neutral * stretch, deltas=0.8 * head.deltas * stretch), tmp_path / "broad.npz")
+    return tmp_path / "broad.npz"
+
+
+def retargeted(qtbot: QtBot, window: MainWindow) -> None:
+    state = window.retarget.retargeting
+    qtbot.waitUntil(lambda: state.idle and not state.opening, timeout=60_000)
+    settled(qtbot, window)
+
+
+def click_at(window: MainWindow, x: float, y: float) -> None:
+    QTest.mouseClick(window.preview.face, LEFT, PLAIN, QPoint(round(x), round(y)))
+
+
+def place_the_chin(qtbot: QtBot, window: MainWindow) -> None:
+    """Choose a marker by its dot on the source, and move it by a click on the target; dragging places nothing."""
+    retarget, face = window.retarget, window.preview.face
+    QTest.mouseClick(retarget.places.show_dots, LEFT, PLAIN, QPoint(10, retarget.places.show_dots.height() // 2))
+    retargeted(qtbot, window)
+    overlay = face.overlay
+    assert overlay is not None
+    chin = retarget.retargeting.names.index("chin")
+    click_at(window, *overlay.at[0][chin])
+    assert retarget.placing.chosen == "chin"
+    retargeted(qtbot, window)
+    overlay, before = face.overlay, retarget.retargeting.target.places["chin"]
+    assert overlay is not None
+    x, y = overlay.at[1][chin]
+    click_at(window, x + 6, y - 8)
+    moved = retarget.retargeting.target.places["chin"]
+    assert moved != before and retarget.retargeting.target.by_hand == {"chin"}
+    retargeted(qtbot, window)
+    assert face.overlay is not None
+    assert np.hypot(*(face.overlay.at[1][chin] - (x + 6, y - 8))) < 6
+    np.testing.assert_allclose(
+        places(face.overlay.sides[1])[chin],
+        face.overlay.sides[1].head.vertices(face.overlay.sides[1].weights)[moved],  # type: ignore[union-attr,arg-type]
+        atol=1e-3,
+    )
+
+    QTest.mousePress(face, LEFT, PLAIN, QPoint(round(x), round(y)))
+    QTest.mouseMove(face, QPoint(round(x) + 60, round(y)))
+    QTest.mouseRelease(face, LEFT, PLAIN, QPoint(round(x) + 60, round(y)))
+    assert face.camera.around_deg != 0 and retarget.retargeting.target.places["chin"] == moved
+
+
+def test_a_take_is_carried_to_another_head_and_back(
+    qtbot: QtBot, window: MainWindow, broad_head: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session, retarget, face = window.session, window.retarget, window.preview.face
+    take = read_take(demo.BUNDLED)
+    session.open(Take(take.weights[60:100], take.fps), None)  # short, so that solving it takes no minute
+    session.move_playhead(FRAME)
+    alone = window.preview.width()
+    QTest.keyClick(window, Qt.Key.Key_T)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(broad_head), ""))
+    QTest.mouseClick(retarget.panel.target_button, LEFT)
+    qtbot.waitUntil(lambda: retarget.retargeting.ready, timeout=30_000)
+    retargeted(qtbot, window)
+    assert face.overlay is not None and len(face.overlay.sides) == 2 and window.preview.width() > alone
+    known = retarget.retargeting.face_at(FRAME)
+    assert known is not None and known.any()
+
+    before = retarget.retargeting.target.places["chin"]
+    place_the_chin(qtbot, window)
+
+    steps = session.undo.count()
+    QTest.keyClick(window, Qt.Key.Key_Return, CONTROL)
+    assert retarget.retargeting.share is not None
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    assert retarget.retargeting.share is None
+    QTest.keyClick(window, Qt.Key.Key_Return, CONTROL)
+    qtbot.waitUntil(lambda: retarget.retargeting.result is not None, timeout=120_000)
+    np.testing.assert_array_equal(session.take.weights, session.original.weights)
+    QTest.keyClick(window, Qt.Key.Key_Return, CONTROL | SHIFT)
+    qtbot.waitUntil(lambda: session.undo.count() == steps + 1, timeout=20_000)
+    assert session.undo.undoText() == "carry to broad"
+    assert (session.take.weights != session.original.weights).any() and session.character is not None
+    retargeted(qtbot, window)
+    assert face.overlay is None and window.preview.width() == alone
+
+    QTest.keyClick(window, Qt.Key.Key_Z, CONTROL)
+    np.testing.assert_array_equal(session.take.weights, session.original.weights)
+    assert session.character is None
+    QTest.keyClick(window, Qt.Key.Key_Z, CONTROL)
+    assert retarget.retargeting.target.places["chin"] == before
