@@ -13,6 +13,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from engine import exact
 from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer, control_index
+from engine.easing import ease
 from engine.errors import EditError
 from engine.models.resample import interpolate
 from engine.regress import infer
@@ -106,12 +107,6 @@ def ask(
     away = np.maximum(0, np.maximum(frames[0] - frame, frame - frames[1] + 1)) / (ease_frames + 1)
     asked[:, column] = np.maximum(0.0, curve + ease(1 - away) * (wanted - curve))
     return first, asked
-
-
-def ease(position: Array) -> Array:
-    """Return the smooth step, 0 at 0 and 1 at 1 with no slope at either."""
-    clipped = np.clip(position, 0.0, 1.0)
-    return np.asarray(clipped * clipped * (3 - 2 * clipped))
 
 
 class Dragger:

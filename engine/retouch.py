@@ -6,7 +6,8 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from engine.controls import bundled_measurer
-from engine.editing import Patch, ease
+from engine.easing import ease
+from engine.editing import Patch
 from engine.errors import EditError
 from engine.take import SHAPES, Array, Take
 
