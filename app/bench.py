@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from app.bench_playback import playback_job, saving_job
+from app.bench_playback import opening_job, playback_job, saving_job
 from engine import speed
 from engine.speed import Speed, percentile_ms
 from engine.speed.drag import performance_of
@@ -30,7 +30,7 @@ def measure(report: Report) -> list[dict[str, Any]]:
     for method in speed.METHODS:
         report(f"measuring {method}")
         rows += speed.measure(method)
-    for job in ("render", "window", "playback", "saving"):
+    for job in ("render", "window", "playback", "saving", "opening"):
         report(f"measuring {job}")
         rows += _in_own_process(job)
     rows.append(_startup())
@@ -213,6 +213,7 @@ JOBS: dict[str, Callable[[], list[Speed]]] = {
     "window": window_job,
     "playback": playback_job,
     "saving": saving_job,
+    "opening": opening_job,
     "startup": startup_job,
 }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QToolButton, QWidget
 
 from app.theme import GRID
 
@@ -28,7 +28,12 @@ class Progress(QWidget):
         self.bar.setFixedSize(BAR_PX, BAR_HEIGHT_PX)
         self.button = QToolButton()
         self.button.setText("✕")
-        self.button.setFixedSize(2 * BAR_HEIGHT_PX, 2 * BAR_HEIGHT_PX)
+        self.button.setFixedWidth(2 * BAR_HEIGHT_PX)
+        for part in (
+            self,
+            self.button,
+        ):  # as high as the line it is in: coming and going must not move the whole window
+            part.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored)
         self.button.setStyleSheet("padding: 0;")
         self.button.setToolTip(what)
         self.button.setAccessibleName(what)

@@ -56,7 +56,6 @@ class StatusBar(QFrame):
             if name == "saved":
                 row.addWidget(self.saving)
                 row.addWidget(self.opening)
-        row.addStrut(self.saving.sizeHint().height())  # a bar that comes or goes must not move the whole window
 
     def __getitem__(self, name: str) -> QLabel:
         return self._labels[name]

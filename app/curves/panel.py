@@ -171,7 +171,8 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             if draft is None or drafted is None:
                 lane.draw_edit((start, stop))
             else:
-                lane.draw_edit((start, stop), (drafted, draft.start), (draft.asked[:, lane.curve.column], draft.start))
+                asked = None if lane.curve.is_weight else (draft.asked[:, lane.curve.column], draft.start)
+                lane.draw_edit((start, stop), (drafted, draft.start), asked)
 
     def _draw_removed(self) -> None:
         session, draft = self.session, self.session.draft

@@ -156,7 +156,8 @@ def test_from_opening_to_reopening_everything_is_equal(
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(take), ""))
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(project), ""))
     window.resize(*SIZE)
-    QTest.keyClick(window, Qt.Key.Key_O, control)
+    with qtbot.waitSignal(window.files.opened, timeout=10_000):
+        QTest.keyClick(window, Qt.Key.Key_O, control)
     assert session.path == take
     opened = session.take
 
