@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QKeyEvent, QShowEvent
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
 from PySide6.QtWidgets import (
-    QApplication,
     QFrame,
     QHBoxLayout,
     QMainWindow,
@@ -33,6 +32,7 @@ from app.inspector.panel import Inspector
 from app.inspector.smooth import SmoothSection
 from app.inspector.value import ValueSection
 from app.keeper import Keeper
+from app.keyboard import Keyboard
 from app.live.section import LiveSection
 from app.media_actions import MediaActions
 from app.menus import Menus
@@ -230,9 +230,7 @@ class MainWindow(QMainWindow):
         self._show_undo()
         self._show_missing()
         self._show_filling()
-        application = QApplication.instance()
-        if application is not None:
-            application.installEventFilter(self)
+        self._keyboard = Keyboard(self, self.preview)
 
     def _connect_media(self) -> None:
         self.media.missing_changed.connect(self._show_missing)
@@ -295,11 +293,9 @@ class MainWindow(QMainWindow):
 
     def shut_down(self) -> None:
         """End the threads; the window cannot be used after."""
-        application = QApplication.instance()
-        if application is not None:
-            application.removeEventFilter(self)
+        self._keyboard.let_go()
         self.transport.run(0.0)
-        self.session.undo.indexChanged.disconnect(self._show_undo)  # clearing itself at its end, it would still tell us
+        self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.files.opening.close()
         self.keeper.close()
         self.inference.close()
@@ -328,7 +324,7 @@ class MainWindow(QMainWindow):
         self.notes.entry.setFocus()
 
     def _show_filling(self) -> None:
-        # Enter belongs to whatever is typed into, unless there is a variant to keep
+        # Enter belongs to the buttons too, unless there is a variant to keep
         self.actions_by_name["accept"].setEnabled(bool(self.filling.variants))
         self.actions_by_name["fill"].setEnabled(not self.filling.busy)
 
@@ -349,23 +345,6 @@ class MainWindow(QMainWindow):
         self.curves.paint_with(colours)
         self.timeline.paint_with(colours)
 
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Show the original for as long as B is held."""
-        kind = event.type()
-        if kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease) and isinstance(event, QKeyEvent):
-            plain = event.key() == Qt.Key.Key_B and event.modifiers() == Qt.KeyboardModifier.NoModifier
-            if plain and self.isActiveWindow() and not event.isAutoRepeat():
-                self._hold_before(kind == QEvent.Type.KeyPress)
-        return False
-
-    def _hold_before(self, held: bool) -> None:
-        if held and self.preview.face.view != "Before":
-            self._view_before_hold = self.preview.face.view
-            self.preview.show_view("Before")
-        elif not held and hasattr(self, "_view_before_hold"):
-            self.preview.show_view(self._view_before_hold)
-            del self._view_before_hold
-
     # --- showing
 
     def _on_change(self, change: Change) -> None:
@@ -374,8 +353,11 @@ class MainWindow(QMainWindow):
         if change & (Change.TAKE | Change.MARKS | Change.MEDIA):
             for kind in MEDIA:
                 self.actions_by_name[f"detach_{kind}"].setEnabled(self.session.marks.medium(kind) is not None)
-        if change & Change.CURVES:
-            self.menus.hints.hide()
+        if change & (Change.TAKE | Change.VISEMES):
+            for name in ("shift_visemes", "restore_visemes", "remove_visemes"):
+                self.actions_by_name[name].setEnabled(self.session.visemes is not None)
+        if change & (Change.TAKE | Change.MARKS | Change.SAVED):
+            self._show_hints()
         if change & Change.TOOL:
             self._show_tool()
 
@@ -383,8 +365,13 @@ class MainWindow(QMainWindow):
         self.setWindowTitle(f"{self.session.name}[*] - Retake")
         self.setWindowModified(self.session.edited)
 
+    def _show_hints(self) -> None:
+        session, stack = self.session, self.session.undo
+        self.menus.show_hints(changed=stack.count() > 0, saved=not session.edited, hatched=bool(session.marks.spans))
+
     def _show_undo(self, *_: int) -> None:
         stack = self.session.undo
+        self._show_hints()
         for name, able, text in (
             ("undo", stack.canUndo(), stack.undoText()),
             ("redo", stack.canRedo(), stack.redoText()),

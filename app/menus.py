@@ -8,13 +8,12 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QMainWindow, QMenu, QSizePolicy, QToolButton
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QMainWindow, QMenu, QToolButton
 
-from app.actions import ACTIONS, MENUS, PRESETS, TOOLBAR, keys_of
+from app.actions import ACTIONS, LINES, MENUS, PRESETS, TOOLBAR, keys_of
+from app.hints import Hints
 from app.settings import Settings
 from app.theme import GRID
-
-HINTS = "Drag a curve: the face follows  ·  F fills what is hatched  ·  Space plays"
 
 
 class Menus(QObject):
@@ -49,10 +48,13 @@ class Menus(QObject):
             menu = self._menus[title] = window.menuBar().addMenu(title)
             for entry in ACTIONS:
                 if entry.menu == title:
+                    if entry.name in LINES:
+                        menu.addSeparator()
                     menu.addAction(self.actions[entry.name])
-        self._recent = self._menus["File"].addMenu("Open recent")
+        self._recent = QMenu("Open recent", window)
+        self._menus["File"].insertMenu(self.actions["save"], self._recent)
         self._recent.aboutToShow.connect(self._fill_recent)
-        self.hints = QLabel(HINTS)
+        self.hints = Hints()
         self._offer_presets()
 
     def _offer_presets(self) -> None:
@@ -73,6 +75,13 @@ class Menus(QObject):
             keys = keys_of(entry, name)
             self.actions[entry.name].setShortcuts([QKeySequence(key) for key in keys])
             self.actions[entry.name].setToolTip(f"{entry.title}  ({keys[0]})" if keys else entry.title)
+
+    def show_hints(self, *, changed: bool, saved: bool, hatched: bool) -> None:
+        """Tell how to begin; after the first edit how to take it back, compare and save it; then nothing."""
+        undo, save, play, fill = (self.actions[name].shortcut().toString() for name in ("undo", "save", "play", "fill"))
+        begin = ["Drag a curve", f"{play} plays", *([f"{fill} fills what is hatched"] if hatched else [])]
+        edited = [f"{undo} takes it back", f"{save} saves", "hold B for before"]
+        self.hints.tell(begin if not changed else [] if saved else edited)
 
     def _fill_recent(self) -> None:
         self._recent.clear()
@@ -100,14 +109,10 @@ class Menus(QObject):
                 row.addSpacing(4)
             for name in group:
                 button = QToolButton()
+                button.setProperty("tool", True)
                 button.setDefaultAction(self.actions[name])
                 button.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # a click leaves the keys to the curves
                 button.setAccessibleName(titles[name])
                 row.addWidget(button)
-        self.hints.setProperty("quiet", True)
-        self.hints.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-        self.hints.setIndent(GRID)
-        # it may be cut off where the window is narrow, but must not keep it from being so
-        self.hints.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         row.addWidget(self.hints, 1)
         return bar

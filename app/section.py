@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
 from app.session import Session
 from app.theme import GRID
+
+NUMBER_PX = 96  # of every box with a number
 
 
 class Section(QWidget):
@@ -39,6 +41,8 @@ class Section(QWidget):
         row.addWidget(widget)
         self.column.addLayout(row)
         widget.setAccessibleName(title)
+        if isinstance(widget, QAbstractSpinBox):
+            widget.setFixedWidth(NUMBER_PX)
 
     def side_by_side(self, *widgets: QWidget) -> None:
         """Add widgets in one row."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import QMessageBox, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app import theme
-from app.actions import ACTIONS, keys_of
+from app.actions import ACTIONS, MENUS, keys_of
 from app.menus import Menus
+from app.page import Page, in_columns
 from app.playback.media import Media
 from app.settings import Settings
 from app.settings_dialog import SettingsDialog
@@ -48,19 +49,23 @@ class SettingsActions(QObject):
 
     def show_keys(self) -> None:
         """List every key."""
-        rows = "".join(
-            f"<tr><td style='padding:2px 16px 2px 0'>{entry.title}</td><td>{', '.join(keys)}</td></tr>"
-            for entry in ACTIONS
-            if (keys := keys_of(entry, self._settings.preset))
-        )
-        extra = "<tr><td>See the original</td><td>hold B</td></tr>"
-        self._tell("Keys", f"<table>{rows}{extra}</table>")
+        groups = {
+            menu: [
+                (entry.title.rstrip("…"), ", ".join(keys))
+                for entry in ACTIONS
+                if entry.menu == menu and (keys := keys_of(entry, self._settings.preset))
+            ]
+            for menu in MENUS
+        }
+        groups["View"].append(("See the original", "hold B"))
+        Page("Keys", in_columns(groups), self._window).show()
 
     def about(self) -> None:
         """Say what this is and which versions it runs on."""
         from app.about import describe
 
-        self._tell("About Retake", describe().replace("\n", "<br>"))
+        name, *rest = describe().split("\n")
+        Page("About Retake", "<br>".join([f"<b>{name}</b>", *rest]), self._window).show()
 
     def apply_all(self) -> None:
         """Let every setting take effect."""
@@ -92,12 +97,3 @@ class SettingsActions(QObject):
     def _follow_system(self) -> None:
         if self._settings.theme == "system":
             self.apply("theme")
-
-    def _tell(self, title: str, text: str) -> None:
-        box = QMessageBox(self._window)
-        box.setWindowTitle(title)
-        box.setText(text)
-        box.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)  # versions and paths are for copying
-        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        box.setModal(False)
-        box.show()

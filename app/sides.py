@@ -33,6 +33,7 @@ class Side:
     dots : drawn over it
     box : lowest and highest corner, (3,) mm each, of what is framed where there is no head
     pickable : whether a click names the vertex under it
+    hint : what it says in its middle where there is nothing to see yet
     """
 
     label: str
@@ -41,3 +42,4 @@ class Side:
     dots: tuple[Dot, ...] = ()
     box: tuple[Array, Array] | None = None
     pickable: bool = False
+    hint: str = ""

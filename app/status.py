@@ -36,6 +36,8 @@ class StatusBar(QFrame):
         self.opening = Progress("Stop opening", opening.stop)
         self._lay_out()
         self._labels["engine"].setText("loading networks…")
+        self["place"].setToolTip("Minutes, seconds and frames, and the frame counted from 0, at the playhead")
+        self["speed"].setToolTip("How long the face took to follow the mouse")
         session.changed.connect(self._on_change)
         keeper.saving_changed.connect(self._show_saving)
         keeper.progress.connect(self.saving.advance)
@@ -63,7 +65,9 @@ class StatusBar(QFrame):
         take = self._session.take
         self["take"].setText(self._session.name)
         self["rate"].setText(f"{take.fps:g} fps")
-        self["length"].setText(f"{len(take):,} frames · {timecode(take.duration_s, take.fps)}")
+        self["length"].setText(
+            f"{len(take):,} {'frame' if len(take) == 1 else 'frames'} · {timecode(take.duration_s, take.fps)}"
+        )
         self.show_place()
         self._show_saved()
 

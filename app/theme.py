@@ -92,6 +92,8 @@ QToolButton:hover, QPushButton:hover {{ background: {c.edge}; }}
 QToolButton:checked, QPushButton[primary="true"] {{ background: {c.accent}; color: {c.on_accent}; }}
 QToolButton[segment="true"]:checked {{ background: {c.edge}; color: {c.text}; }}
 QToolButton:disabled, QPushButton:disabled {{ color: {c.faint}; }}
+QToolButton[tool="true"] {{ padding: 5px 8px; }}
+QPushButton:checked {{ border: 1px solid {c.accent}; }}
 QToolButton:focus, QPushButton:focus, QCheckBox:focus, QSlider:focus, QDoubleSpinBox:focus {{
   border: 1px solid {c.accent}; }}
 QToolButton::menu-indicator {{ image: none; }}
@@ -104,13 +106,16 @@ QCheckBox::indicator {{
   width: 12px; height: 12px; border: 1px solid {c.quiet}; border-radius: 3px; background: {c.ground}; }}
 QCheckBox::indicator:checked {{ background: {c.accent}; border-color: {c.accent}; image: url("{ICONS}/{c.check}.svg"); }}
 QCheckBox {{ border: 1px solid transparent; border-radius: 4px; padding: 2px; spacing: 8px; }}
-QDoubleSpinBox, QSpinBox, QLineEdit, QComboBox, QPlainTextEdit, QListWidget, QTreeWidget, QTableWidget {{
+QDoubleSpinBox, QSpinBox, QLineEdit, QComboBox, QPlainTextEdit, QListView, QTreeView, QTableView {{
   background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; padding: 3px 6px;
   selection-background-color: {c.accent}; selection-color: {c.on_accent}; }}
 QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
 QComboBox::drop-down {{ border: none; width: 20px; }}
 QComboBox::down-arrow {{ image: url("{ICONS}/down.svg"); width: 10px; height: 6px; }}
 QComboBox QAbstractItemView {{ background: {c.panel}; border: 1px solid {c.edge}; }}
+QFileDialog QToolButton {{ padding: 2px; }}
+QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
+QHeaderView {{ background: {c.panel}; }}
 QHeaderView::section {{ background: {c.panel}; color: {c.quiet}; border: none; padding: 3px 6px; }}
 QMenuBar {{ background: {c.ground}; }}
 QMenuBar::item {{ padding: 4px 8px; background: transparent; }}

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from engine.errors import AssetError
+from engine.errors import AssetError, EngineError
+from engine.formats.archive import arrays_of
 from engine.formats.atomic import write_bytes
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
 BUNDLED = Path(__file__).parent.parent / "assets" / "head" / "head.npz"
+REQUIRED = ("vertices", "faces", "shape_names", "deltas", "colours", "landmark_names", "landmark_vertices")
+FARTHEST_MM = 1e6
 MAX_NAME = 80  # letters shown on screen
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 
@@ -81,26 +85,45 @@ def drawable(weights: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
 def load(path: Path = BUNDLED) -> Character:
     """Read a character written by `save`; raises `AssetError` where the file is missing or damaged."""
     try:
-        with np.load(path, allow_pickle=False) as stored:
-            names = [str(name) for name in stored["shape_names"]]
-            deltas = np.zeros((len(SHAPES), *stored["vertices"].shape), np.float32)
-            for name, delta in zip(names, stored["deltas"], strict=True):
-                deltas[SHAPE_INDEX[name]] = delta
-            pairs = zip(stored["landmark_names"], stored["landmark_vertices"], strict=True)
-            landmarks = {str(name): int(vertex) for name, vertex in pairs}
-            return Character(
-                stored["vertices"],
-                stored["faces"],
-                deltas,
-                stored["colours"],
-                landmarks,
-                name=str(stored["name"])[:MAX_NAME] if "name" in stored else Character.name,
-                mirror=stored["mirror"] if "mirror" in stored else np.zeros(0, np.int32),
-            )
-    except (OSError, KeyError, ValueError) as error:
+        return _sound(_stored(arrays_of(path, (*REQUIRED, "name", "mirror"))))
+    except (EngineError, KeyError, ValueError, TypeError, IndexError, OverflowError) as error:
         raise AssetError(
-            f"The character file {path.name} is missing or damaged.", "Rebuild it: retake build head."
+            f"The character file {path.name} is missing or damaged.",
+            "Rebuild it: retake build head." if path == BUNDLED else "Import it again: retake character import.",
         ) from error
+
+
+def _stored(arrays: Mapping[str, npt.NDArray[Any]]) -> Character:
+    vertices = arrays["vertices"].astype(np.float32, casting="same_kind")
+    deltas = np.zeros((len(SHAPES), *vertices.shape), np.float32)
+    for name, delta in zip(arrays["shape_names"], arrays["deltas"], strict=True):
+        deltas[SHAPE_INDEX[str(name)]] = delta
+    pairs = zip(arrays["landmark_names"], arrays["landmark_vertices"], strict=True)
+    return Character(
+        vertices,
+        arrays["faces"].astype(np.int32, casting="same_kind"),
+        deltas,
+        arrays["colours"].astype(np.uint8, casting="same_kind"),
+        {str(name): int(vertex) for name, vertex in pairs},
+        name=str(arrays["name"])[:MAX_NAME] if "name" in arrays else Character.name,
+        mirror=arrays.get("mirror", np.zeros(0)).astype(np.int32, casting="unsafe"),
+    )
+
+
+def _sound(made: Character) -> Character:
+    """Return a character whose arrays belong together; raises `ValueError` for another."""
+    count = len(made.neutral)
+    landmarks = np.array(list(made.landmarks.values()), np.int64)
+    indices = np.concatenate([made.triangles.ravel(), made.mirror, landmarks])
+    shapes = made.neutral.shape == made.colours.shape == (count, 3) and made.triangles.shape[1:] == (3,)
+    places = [made.neutral, made.deltas]
+    if not (count and len(made.triangles) and shapes and made.mirror.shape in ((0,), (count,))):
+        raise ValueError("arrays whose sizes do not belong together")
+    if not all(bool((np.abs(place) < FARTHEST_MM).all()) for place in places):
+        raise ValueError("a place that is not finite, or further away than a head can be")
+    if not 0 <= indices.min() <= indices.max() < count:
+        raise ValueError("a vertex that is not there")
+    return made
 
 
 def save(character: Character, path: Path) -> None:

@@ -86,7 +86,7 @@ class Measurer:
         vectors = self._vectors(weights)
         unit = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
         basis = self._basis.reshape(len(SHAPES), -1, 3)
-        slope = np.einsum("fcx,scx->fcs", unit, basis)
+        slope = (unit.transpose(1, 0, 2) @ basis.transpose(1, 2, 0)).transpose(1, 0, 2)  # many times as fast as einsum
         limited = weights[:, _CLOSE] > weights[:, _JAW]  # there mouthClose follows the jaw instead of its own weight
         slope[limited, :, _JAW] += slope[limited, :, _CLOSE]
         slope[limited, :, _CLOSE] = 0.0

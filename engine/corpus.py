@@ -28,11 +28,13 @@ class Piece:
     weights : (frames, 52) float64, clamped to 0..1
     whole_face : False where the take animates the mouth and jaw alone
     source : name of the take
+    first : frame of the take, at the model rate, at which it begins
     """
 
     weights: Array
     whole_face: bool
     source: str
+    first: int = 0
 
 
 def data_folder() -> Path:
@@ -62,7 +64,7 @@ def pieces_of(take: Take, *, whole_face: bool) -> list[Piece]:
     resampled, lost = to_model_rate(take)
     kept: Mask = ~lost
     return [
-        Piece(np.clip(resampled[start:stop], 0.0, 1.0), whole_face, Path(take.name).stem)
+        Piece(np.clip(resampled[start:stop], 0.0, 1.0), whole_face, Path(take.name).stem, start)
         for start, stop in runs(kept)
         if stop - start >= SHORTEST
     ]
@@ -92,9 +94,9 @@ def _divide(pieces: list[Piece]) -> tuple[list[Piece], list[Piece]]:
     for piece in pieces:
         cut = int(np.clip(border - seen, 0, len(piece.weights)))
         seen += len(piece.weights)
-        for part, target in ((piece.weights[:cut], early), (piece.weights[cut:], late)):
+        for part, first, target in ((piece.weights[:cut], 0, early), (piece.weights[cut:], cut, late)):
             if len(part) >= SHORTEST:
-                target.append(Piece(part, piece.whole_face, piece.source))
+                target.append(Piece(part, piece.whole_face, piece.source, piece.first + first))
     return early, late
 
 

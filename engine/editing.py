@@ -13,6 +13,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from engine import exact
 from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer, control_index
+from engine.easing import ease
 from engine.errors import EditError
 from engine.models.resample import interpolate
 from engine.regress import infer
@@ -35,6 +36,7 @@ FEATHER_S = 0.5  # how far beyond the changed frames a face may still move, easi
 FOLLOW = True  # on validation takes edits miss 0.88 mm so, 1.54 mm without; 1.05 times as far from recorded motion
 FOLLOW_ROUNDS = 6  # of landing; the guess need not be exact
 ALIKE_MM = 0.5  # sides asked to change as equally as this are asked together
+FARTHEST_MM = 1000.0  # more than this is a slip; far more would overflow
 HOLD_S = 0.15  # over which a contact comes and goes
 CONTACT_MM, CONTACT_FROM_MM = 1.0, 6.0  # lips or lids asked this close are meant to touch
 
@@ -92,10 +94,10 @@ def ask(
 ) -> tuple[int, Array]:
     """Return a range's first frame and asked curves, (n, 8) in mm: one control changed, eased in and out beside it.
 
-    `controls` are the take's measured curves, (frames, 8). Raises `EditError` for an amount that is not finite.
+    `controls` are the take's measured curves, (frames, 8). Raises `EditError` for an amount that no face could take.
     """
-    if not np.isfinite(amount):
-        raise EditError("The amount of a change must be a finite number.")
+    if not abs(amount) <= FARTHEST_MM:
+        raise EditError(f"The amount of a change must be a number within {FARTHEST_MM:,.0f}.")
     first, last = max(0, frames[0] - ease_frames), min(len(controls), frames[1] + ease_frames)
     asked = controls[first:last].copy()
     column = control_index(control)
@@ -105,12 +107,6 @@ def ask(
     away = np.maximum(0, np.maximum(frames[0] - frame, frame - frames[1] + 1)) / (ease_frames + 1)
     asked[:, column] = np.maximum(0.0, curve + ease(1 - away) * (wanted - curve))
     return first, asked
-
-
-def ease(position: Array) -> Array:
-    """Return the smooth step, 0 at 0 and 1 at 1 with no slope at either."""
-    clipped = np.clip(position, 0.0, 1.0)
-    return np.asarray(clipped * clipped * (3 - 2 * clipped))
 
 
 class Dragger:
@@ -153,8 +149,8 @@ class Dragger:
         stop = start + len(asked)
         if not (0 <= start < stop <= len(self.take)) or asked.shape[1] != len(CONTROLS):
             raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(self.take)} frames.")
-        if not np.isfinite(asked).all():
-            raise EditError("The asked curves must be finite.")
+        if not (np.abs(asked) < FARTHEST_MM**2).all():
+            raise EditError("The asked curves must be finite, and within what a face could be asked.")
         feather = round(FEATHER_S * self.take.fps)
         first, last = max(0, start - feather), min(len(self.take), stop + feather)
         wanted = self.controls[first:last].copy()

@@ -6,10 +6,12 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from engine.controls import bundled_measurer
-from engine.editing import Patch, ease
+from engine.easing import ease
+from engine.editing import Patch
 from engine.errors import EditError
 from engine.take import SHAPES, Array, Take
 
+LOWEST_HZ = 0.001
 ORDER = 2  # filtered once in each direction, so the slope is that of order 4 and nothing shifts in time
 
 
@@ -55,8 +57,8 @@ def smooth(take: Take, frames: tuple[int, int], cutoff_hz: float, *, feather_s: 
     start, stop = frames
     if not 0 <= start < stop <= len(take):
         raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
-    if not 0.0 < cutoff_hz < take.fps / 2:
-        raise EditError(f"The cutoff must be above 0 and below {take.fps / 2:g} Hz, half the frame rate.")
+    if not LOWEST_HZ <= cutoff_hz < take.fps / 2:
+        raise EditError(f"The cutoff must be above {LOWEST_HZ:g} and below {take.fps / 2:g} Hz, half the frame rate.")
     if len(take) < 3:
         return _patch(take, start, take.weights[start:stop].copy())
     settle = int(np.ceil(2 * take.fps / cutoff_hz))

@@ -178,7 +178,7 @@ def replay(
 
 def _address(text: str) -> tuple[str, int]:
     host, _, port = text.rpartition(":")
-    if not host or not port.isascii() or not port.isdigit() or not 0 < int(port) < 65536:
+    if not host or not port.isascii() or not port.isdigit() or len(port) > 5 or not 0 < int(port) < 65536:
         raise EngineError(f"{text!r} is no address.", "Write host and port: 127.0.0.1:11111.")
     return host.strip("[]"), int(port)
 

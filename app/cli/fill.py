@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from engine.errors import EditError, FormatError
-from engine.formats import read_take, write_take
+from engine.formats import format_of, read_take, write_take
+from engine.formats.textfile import read_text
 
 if TYPE_CHECKING:
     from engine.pose import Pose
@@ -40,7 +42,7 @@ def fill(
         typer.Option(help="An asked curve in mm: lips_vertical=3, =40:3,60:12 by frame, or a file of numbers."),
     ] = None,
     style: Annotated[str, typer.Option(help="auto, bridge (a smooth curve) or perform.")] = "auto",
-    seed: Annotated[int, typer.Option(help="Which of the many possible motions.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Which of the many possible motions.")] = 0,
     variants: Annotated[int, typer.Option(min=1, max=100, help="How many; each is written to a file of its own.")] = 1,
 ) -> None:
     """Fill a span with believable motion, steered by as much or as little as is given."""
@@ -50,6 +52,7 @@ def fill(
     from engine.inpaint.request import Request, Style, merged_pins
     from engine.speech.visemes import begun_at
 
+    format_of(out)  # better refused now than after the work
     if bool(frames) == lost:
         raise EditError("Say what to fill.", "Give --frames A:B, or --lost for every lost run.")
     opened = read_take(take)
@@ -82,18 +85,24 @@ def _said(spans: list[tuple[int, int]]) -> str:
 
 def _pin(text: str) -> tuple[int, Pose]:
     frame, _, what = text.partition(":")
-    if not frame.strip().isdigit() or not what:
+    if not _is_frame(frame.strip()) or not what:
         raise EditError(
             f"{text!r} is not a pin.", "Write the frame, a colon and weights: 50:jawOpen=.6 - or a take file."
         )
     if "=" in what:
         return int(frame), dict(_weight(part) for part in what.split(","))
-    name, _, which = what.partition("@")
+    name, at, which = what.rpartition("@") if "@" in what else (what, "", "0")
+    if at and not _is_frame(which):
+        raise EditError(f"{which[:40]!r} is not a frame of {Path(name).name}.", "Write OTHER.csv@FRAME.")
     other = read_take(Path(name))
-    index = int(which) if which.isdigit() else 0
+    index = int(which)
     if index >= len(other):
         raise EditError(f"{other.name} has no frame {index}: it has {len(other)} frames.")
     return int(frame), other.weights[index]
+
+
+def _is_frame(text: str) -> bool:
+    return text.isascii() and text.isdigit() and len(text) < 10
 
 
 def _weight(text: str) -> tuple[str, float]:
@@ -105,7 +114,7 @@ def _number(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise EditError(f"{text!r} is not a number.") from None
+        raise EditError(f"{text[:40]!r} is not a number.") from None
 
 
 def _controls(texts: list[str], spans: list[tuple[int, int]]) -> dict[str, Array | float]:
@@ -124,11 +133,11 @@ def _curve(text: str, spans: list[tuple[int, int]]) -> Array | float:
     """Return a constant, a line through frame:mm points, or the numbers in a file, one per frame of the span."""
     import numpy as np
 
-    if Path(text).is_file():
+    if os.path.exists(text):
         try:
-            numbers: Array = np.loadtxt(text, ndmin=1)
+            numbers: Array = np.array([float(word) for word in read_text(Path(text)).split()])
             return numbers
-        except (ValueError, OSError, UnicodeDecodeError):
+        except ValueError:
             raise FormatError(f"{Path(text).name} is not a list of numbers.") from None
     if ":" not in text:
         return _number(text)

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli import labelled
-from engine.errors import EditError, FormatError
+from engine.errors import EditError
+from engine.formats.content import require_file, unread
 
 if TYPE_CHECKING:
     from engine.character import Character
     from engine.spacetime.retarget import Matching
     from engine.spacetime.source import Source
     from engine.take import Take
+
+STRONGEST = 1e12  # beyond this the system cannot be solved
 
 
 class Method(StrEnum):
@@ -148,11 +151,12 @@ def _source(path: Path, *, neutral: int, unit: str | None, fps: float | None) ->
 
 def _is_take(path: Path) -> bool:
     """Return whether a file begins as a Live Link Face take does; a CSV may also hold markers."""
+    require_file(path)
     try:
         with path.open("rb") as file:
             return file.read(16).removeprefix(b"\xef\xbb\xbf").lower().startswith(b"timecode")
     except OSError as error:
-        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+        raise unread(path, error) from error
 
 
 def assignments(text: str) -> dict[str, float]:
@@ -168,8 +172,8 @@ def assignments(text: str) -> dict[str, float]:
 
 
 def _strength(name: str, value: float) -> float:
-    if not 0 <= value < float("inf"):
-        raise EditError(f"{name} must be a number of zero or more.")
+    if not 0 <= value <= STRONGEST:
+        raise EditError(f"{name} must be a number from 0 to {STRONGEST:g}.")
     return value
 
 

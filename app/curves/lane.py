@@ -47,7 +47,13 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
         mark = "" if self._curve.is_weight else "▾ " if self.expanded else "▸ "
         indent = INDENT_PX if self._curve.is_weight else 0
-        painter.drawText(name_box.adjusted(indent, 0, 0, 0), left, mark + self._curve.title)
+        name_box.adjust(indent, 0, 0, 0)
+        wide = painter.fontMetrics().horizontalAdvance(mark + self._curve.title)
+        if wide > name_box.width():
+            font.setStretch(int(100 * name_box.width() / wide))  # a name that is cut may be another's
+            painter.setFont(font)
+        painter.drawText(name_box, left, mark + self._curve.title)
+        font.setStretch(QFont.Stretch.Unstretched)
         font.setBold(False)
         painter.setFont(font)
         painter.setPen(self.text_colour)
@@ -66,8 +72,12 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
             painter.setPen(self.quiet)
             area.setHeight(area.height() * (1 - self.spare))
         if area.height() > 26 and not self._curve.is_weight:
-            painter.drawText(area, right | Qt.AlignmentFlag.AlignTop, f"{high:.0f}")
-            painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, f"{low:.0f}")
+            top, bottom = f"{high:.0f}", f"{low:.0f}"
+            if top == bottom:
+                painter.drawText(area, right | Qt.AlignmentFlag.AlignVCenter, top)
+                return
+            painter.drawText(area, right | Qt.AlignmentFlag.AlignTop, top)
+            painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, bottom)
 
 
 class Lane:

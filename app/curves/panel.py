@@ -82,6 +82,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     def _on_change(self, change: Change) -> None:
         kinds = Change
         for cause, step in (
+            (kinds.TAKE, self._let_go),
             (kinds.TAKE | kinds.LANES, self._lay_lanes),
             (kinds.TAKE | kinds.LANES | kinds.CURVES, self._take_curves),
             (kinds.TAKE | kinds.LANES | kinds.CURVES, self._fit_values),
@@ -90,6 +91,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT, self._draw_edits),
             (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT | kinds.TOOL, self._draw_removed),
             (kinds.TAKE | kinds.LANES | kinds.PLAYHEAD | kinds.CURVES | kinds.DRAFT, self._show_playhead),
+            (kinds.LANES | kinds.CURVES | kinds.DRAFT, self.tool.leave),  # what it showed is not there any more
             (kinds.DRAFT, self.tool.refresh),
             (kinds.TAKE | kinds.TOOL, self._take_up_tool),
             (kinds.TAKE | kinds.LANES | kinds.TOOL | kinds.VIEW | kinds.SELECTION | kinds.MARKS, self._show_marks),
@@ -103,11 +105,17 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self._underlay.update()
         self._playhead.update()
 
+    def _let_go(self) -> None:
+        """Drop a gesture whose take is gone: its frames may not be there any more."""
+        if self.tool.busy:
+            self.tool.cancel()
+
     def _take_up_tool(self) -> None:
         for tool in self.tools.values():
             if tool is not self.tool and tool.busy:
                 tool.cancel()
         self.show_handles(QRectF(), [])
+        self.tool.leave()
         self.setCursor(self.tool.cursor)
 
     def _lay_lanes(self) -> None:

@@ -23,6 +23,8 @@ def peaks(visible: Array, start: int, columns: int) -> tuple[Array, Array]:
     Where more than two frames fall on a pixel, only the lowest and highest value of each are kept, so no spike is lost.
     NaN is drawn only where a pixel has nothing else.
     """
+    if len(visible) == 1:  # all of a take of one frame: a line needs two points
+        return np.array([start, start + 1.0]), np.repeat(visible, 2)
     step = len(visible) // max(1, columns)
     if step < 3:
         return np.arange(start, start + len(visible), dtype=np.float64), visible

@@ -14,6 +14,8 @@ from engine.controls import bundled_measurer
 from engine.exact import shortfalls
 from engine.take import Array
 
+LEGEND = "Curves: grey as recorded, dashed as asked."
+
 
 class FactsSection(Section):
     """What is asked and reached, and why not more; how much differs from the original."""
@@ -72,7 +74,9 @@ class FactsSection(Section):
         if not session.undo.index():
             return "Nothing changed yet. Drag a curve up or down."
         moved = int((session.take.weights != session.original.weights).any(axis=1).sum())
-        return f"{moved:,} of {frames:,} frames differ from the original\n{frames - moved:,} frames bit-identical"
+        if not moved:
+            return "Every frame is as recorded."
+        return f"{moved:,} of {frames:,} frames changed, the rest is as recorded, bit for bit.\n{LEGEND}"
 
 
 def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, exact: bool) -> list[str]:

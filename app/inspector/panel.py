@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QFrame, QLineEdit, QScrollArea, QVBoxLayout, QWidget
 
 from app.section import Section
 from app.session import Change, Session
@@ -34,6 +34,9 @@ class Inspector(QFrame):
         column.setSpacing(GRID)
         for section in sections:
             column.addWidget(section)
+        for box in inner.findChildren(QAbstractSpinBox):
+            for entry in box.findChildren(QLineEdit):  # whose text the style sheet leaves at the edge
+                entry.setTextMargins(GRID // 2, 0, 0, 0)
         column.addStretch(1)
         area = QScrollArea()
         area.setWidgetResizable(True)

@@ -52,7 +52,7 @@ class ValueSection(Section):
 
     def _show(self) -> None:
         session, curve = self.session, CURVES[self.session.lane]
-        self.title.setText(curve.title[0].upper() + curve.title[1:])
+        self.title.setText(curve.title if curve.is_weight else curve.title[0].upper() + curve.title[1:])
         self.close_button.setVisible(closes(session.lane))
         self.value.setDecimals(2 if curve.is_weight else 1)
         self.value.setSingleStep(0.05 if curve.is_weight else 0.5)

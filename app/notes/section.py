@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 
-from PySide6.QtWidgets import QLineEdit, QPushButton, QVBoxLayout
+from PySide6.QtWidgets import QLineEdit, QPushButton, QSizePolicy, QVBoxLayout
 
 from app.commands import MarkCommand
 from app.section import Section
@@ -64,9 +64,10 @@ class NotesSection(Section):
                 old.deleteLater()
         fps = self.session.take.fps
         for note in self.session.marks.notes[:SHOWN]:
-            shown = note.text if len(note.text) < 24 else f"{note.text[:22]}…"
+            shown = note.text if len(note.text) < 20 else f"{note.text[:18]}…"
             button = QPushButton(f"{timecode(note.frame / fps, fps)}  {shown}")
             button.setStyleSheet("text-align: left;")
+            button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)  # never wider than the rest
             button.setToolTip(f"{note.text}\n{note.author}, {note.time}")
             button.clicked.connect(lambda _=False, frame=note.frame: self.session.move_playhead(frame))
             self._list.addWidget(button)

@@ -8,6 +8,7 @@ import numpy as np
 
 from engine.take import Array
 
+FACE_WIDTH = 0.84  # of the head's: where there is little room the ears go, and the face is shown larger
 FIELD_OF_VIEW_DEG = 18.0  # a portrait lens: wider ones enlarge the nose
 
 
@@ -18,7 +19,7 @@ class Camera:
     Attributes
     ----------
     around_deg, above_deg : orbit; 0, 0 is straight ahead, positive goes to the head's left and up
-    zoom : 1 shows the whole head
+    zoom : 1 shows the whole head, in a narrow picture the face
     pan : shift of the point looked at, in parts of the head's height, right and up on screen
     """
 
@@ -50,7 +51,7 @@ class Camera:
         right = np.cross([0.0, 1.0, 0.0], ahead)
         right /= np.linalg.norm(right)
         up = np.cross(ahead, right)
-        wide = abs(right[0]) * size[0] + abs(right[2]) * size[2]
+        wide = abs(right[0]) * FACE_WIDTH * size[0] + abs(right[2]) * size[2]
         shown = 1.06 * max(size[1], wide / aspect) / self.zoom
         target = (low + high) / 2 + size[1] * (self.pan[0] * right + self.pan[1] * up)
         pose = np.eye(4)

@@ -65,6 +65,9 @@ class Overlay:
             painter.setPen(TEXT)
             box = QRectF(view.left + GRID, 6, view.width - 2 * GRID, 18)
             name = painter.fontMetrics().elidedText(side.label, Qt.TextElideMode.ElideMiddle, int(box.width()))
+            if side.hint:
+                middle = QRectF(view.left + 3 * GRID, 0, view.width - 6 * GRID, view.height)
+                painter.drawText(middle, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, side.hint)
             painter.drawText(box, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, name)
 
     def _draw_dots(self, painter: QPainter, index: int) -> None:

@@ -351,7 +351,7 @@ class PreviewPanel(QFrame):
         if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.CHARACTER):
             session = self._session
             self._show_frame()
-            drafted = change & Change.DRAFT and session.draft is not None
+            drafted = change & Change.DRAFT and session.draft is not None and self._inference.busy
             self.refresh(since=self._inference.since if drafted else 0.0)
 
     def resizeEvent(self, event: QResizeEvent) -> None:

@@ -90,16 +90,24 @@ def facing(side: Side, view: View, at: Array) -> Mask:
 def vertex_under(head: Character, weights: Array, view: View, x: float, y: float) -> int | None:
     """Return the visible vertex nearest to a pixel: a corner of the first triangle that the ray through it meets.
 
-    Moeller and Trumbore's test on all triangles at once; None where the ray meets none.
+    Moeller and Trumbore's test on the triangles whose picture is about the pixel; None where the ray meets none.
     """
     vertices = head.vertices(weights).astype(np.float64)
-    direction = view.ray(x, y)
-    hit = _first_hit(vertices[head.triangles], view.eye, direction)
+    flat = view.project(vertices)
+    about = _around(flat[:, 0], x, head.triangles) & _around(flat[:, 1], y, head.triangles)
+    near = head.triangles[about]
+    hit = _first_hit(vertices[near], view.eye, view.ray(x, y))
     if hit is None:
         return None
-    corners = head.triangles[hit]
-    away = np.linalg.norm(view.project(vertices[corners]) - (x, y), axis=1)
-    return int(corners[np.argmin(away)])
+    away = np.linalg.norm(flat[near[hit]] - (x, y), axis=1)
+    return int(near[hit][np.argmin(away)])
+
+
+def _around(place: Array, wanted: float, triangles: npt.NDArray[np.int32]) -> Mask:
+    """Return which triangles reach from one side of a coordinate, (vertices,), to the other."""
+    beyond = (place > wanted).astype(np.int8)  # sums over columns: a minimum over three is twenty times slower
+    count = beyond[triangles[:, 0]] + beyond[triangles[:, 1]] + beyond[triangles[:, 2]]
+    return np.asarray((count > 0) & (count < 3))
 
 
 def _first_hit(corners: Array, eye: Array, direction: Array) -> int | None:

@@ -34,7 +34,8 @@ def sides(session: Session, retargeting: Retargeting, chosen: str, *, dots: bool
     else:
         left = _of_take(session, retargeting.performance.head, chosen, dots=dots)
     if head is None:
-        return left, Side("no head chosen yet", None, box=_box(bundled().neutral.astype(np.float64)))
+        hint = "Choose a head in the panel at the right:\nit will stand here and move as the source does."
+        return left, Side("no head yet", None, box=_box(bundled().neutral.astype(np.float64)), hint=hint)
     by_name = retargeting.method == LABELS and capture is None
     state = "solved" if retargeting.result is not None else "weights by name" if by_name else "live"
     on_target = _on_head(target, retargeting.names, chosen) if dots else ()

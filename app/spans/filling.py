@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -80,6 +80,11 @@ class Filling(QObject):
         """Whether nothing is being made."""
         return self._work.idle
 
+    @property
+    def chosen_seed(self) -> int:
+        """What the variant that is shown was drawn from; with the same steering it gives the same motion."""
+        return (self._request.seed if self._request else self.seed) + self.chosen
+
     def start(
         self,
         span: Span,
@@ -110,11 +115,13 @@ class Filling(QObject):
         return lane.over(span.start / fps, span.stop / fps) if lane is not None else ()
 
     def again(self) -> None:
-        """Make other variants of the same span."""
+        """Make other variants of the same span, steered by the same."""
         if self._request is not None:
             self.seed += VARIANTS
-            span, request = self._request.span, self._request
-            self.start(span, style=request.style, guide=request.guide, guide_offset=request.guide_offset)
+            self.busy = True
+            self._request = replace(self._request, seed=self.seed)
+            self._work.submit(self._request)
+            self.changed.emit()
 
     def choose(self, index: int) -> None:
         """Show a variant, counted around."""
@@ -129,7 +136,7 @@ class Filling(QObject):
             return
         request, patch = self._request, self.variants[self.chosen]
         frames = request.span.stop - request.span.start
-        inputs = {**request.inputs, "seed": request.seed + self.chosen}
+        inputs = {**request.inputs, "seed": self.chosen_seed}
         self._forget()
         title = f"fill {frames} frames"
         self._session.undo.push(EditCommand(self._session, patch, title, kind="fill", inputs=inputs))

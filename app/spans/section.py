@@ -6,7 +6,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QFileDialog, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QFileDialog,
+    QHBoxLayout,
+    QPushButton,
+    QSpinBox,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.commands import MarkCommand
 from app.section import Section, quiet
@@ -54,6 +63,9 @@ class SpansSection(Section):
         self.strip = Strip()
         self.strip.chosen.connect(filling.choose)
         self.column.addWidget(self.strip)
+        self.seed = quiet("")
+        self.seed.setToolTip("What this variant was drawn from; the same steering and seed give the same motion.")
+        self.column.addWidget(self.seed)
         self.accept_button, self.again_button, self.drop_button = (
             QPushButton("Keep"),
             QPushButton("Others"),
@@ -88,6 +100,9 @@ class SpansSection(Section):
         self.visemes.setChecked(True)
         self.guide_button = QPushButton("Guide by a take…")
         self.guide_button.setToolTip("Another take of the same rate, such as a rough one from a webcam.")
+        self.guide_shift = QSpinBox(minimum=-999_999, maximum=999_999)
+        self.guide_shift.setToolTip("How many frames later in the guide the same moment lies.")
+        self._shift_row = _named("Guide is ahead by", self.guide_shift, "frames")
         self.fill_button, self.remove_button = QPushButton("Fill"), QPushButton("Unmark")
         self.fill_button.setProperty("primary", True)
         self.fill_button.setToolTip("Fill the chosen span (F)")
@@ -98,11 +113,13 @@ class SpansSection(Section):
             self.curves,
             self.visemes,
             self.guide_button,
+            self._shift_row,
             self.fill_button,
             self.remove_button,
             self.note,
         ):
             box.addWidget(widget)
+        self._shift_row.hide()
         self.region.activated.connect(self._set_region)
         self.guide_button.clicked.connect(self._choose_guide)
         self.fill_button.clicked.connect(self.fill)
@@ -121,6 +138,11 @@ class SpansSection(Section):
         selection, marks = self.session.selection, self.session.marks
         if selection is None or self.chosen is not None:
             return
+        for other in marks.spans:  # one that was lost may lie within: it is often filled with some frames around it
+            if other.kind != "lost" and other.start < selection[1] and selection[0] < other.stop:
+                where = f"{other.start}:{other.stop}"
+                self.refused.emit(f"A span at {where} is marked already.", "Unmark it, or mark frames beside it.")
+                return
         spans = sorted((*marks.spans, Span(*selection)), key=lambda span: span.start)
         self.session.undo.push(MarkCommand(self.session, replace(marks, spans=tuple(spans)), "mark a span"))
 
@@ -134,6 +156,9 @@ class SpansSection(Section):
     def fill(self) -> None:
         """Fill the chosen span, or the selection."""
         span = self.chosen or (Span(*self.session.selection) if self.session.selection else None)
+        spans = self.session.marks.spans
+        if span is None and len(spans) == 1:  # there is only one that can be meant
+            self._go_to(span := spans[0])
         if span is None:
             self.refused.emit("No span is chosen.", "Click one in the spans lane, or drag there to mark one.")
             return
@@ -142,6 +167,7 @@ class SpansSection(Section):
             span,
             style=style,
             guide=self._guide,
+            guide_offset=self.guide_shift.value(),
             keep_curves=self.curves.isChecked(),
             keep_visemes=self.visemes.isChecked(),
         )
@@ -155,11 +181,16 @@ class SpansSection(Section):
 
     def _choose_guide(self) -> None:
         name, _ = QFileDialog.getOpenFileName(self, "A take to follow", "", "Takes (*.csv)")
+        self.guide_by(Path(name) if name else None)
+
+    def guide_by(self, path: Path | None) -> None:
+        """Let fills follow a take, or none."""
         try:
-            self._guide = read_take(Path(name)) if name else None
+            self._guide = read_take(path) if path else None
         except EngineError as error:
             self.refused.emit(error.sentence, error.advice)
         self.guide_button.setText(f"Guide: {self._guide.name}" if self._guide else "Guide by a take…")
+        self._shift_row.setVisible(self._guide is not None)
 
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.MARKS | Change.SELECTION | Change.VISEMES):
@@ -193,8 +224,9 @@ class SpansSection(Section):
         chosen, filling = self.chosen, self._filling
         self._chosen_box.setVisible(chosen is not None and not filling.variants)
         made = bool(filling.variants)
-        for widget in (self.strip, self.accept_button, self.again_button, self.drop_button):
+        for widget in (self.strip, self.seed, self.accept_button, self.again_button, self.drop_button):
             widget.setVisible(made)
+        self.seed.setText(f"Variant {filling.chosen + 1} of {len(filling.variants)} · seed {filling.chosen_seed}")
         self.strip.show_variants(filling.variants, filling.chosen)
         self.fill_button.setText("Filling…" if filling.busy else "Fill")
         self.fill_button.setEnabled(not filling.busy)
@@ -206,3 +238,15 @@ class SpansSection(Section):
             pins = sum(chosen.start <= pin.frame < chosen.stop for pin in self.session.marks.pins)
             self.note.setText(f"{pins} pin{'s' * (pins != 1)} inside will be met exactly." if pins else "")
             self.note.setVisible(bool(pins))
+
+
+def _named(title: str, box: QSpinBox, unit: str) -> QWidget:
+    """Return a number with its name before and its unit in it."""
+    made = QWidget()
+    row = QHBoxLayout(made)
+    row.setContentsMargins(0, 0, 0, 0)
+    row.addWidget(quiet(title), 1)
+    row.addWidget(box)
+    box.setSuffix(f" {unit}")
+    box.setAccessibleName(title)
+    return made

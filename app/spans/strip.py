@@ -78,6 +78,7 @@ class Strip(QWidget):
                 painter.drawImage(cell, self._image, QRect(index * width, 0, width, self._image.height()))
             painter.setPen(QPen(QColor("#56B4E9" if index == self._chosen else "#2a2f38"), 2))
             painter.drawRect(cell.adjusted(1, 1, -1, -1))
+            painter.fillRect(QRect(cell.left() + 3, cell.top() + 3, 14, 16), QColor(20, 22, 26, 170))
             painter.setPen(QColor("#e3e6eb"))
             painter.drawText(
                 cell.adjusted(6, 4, 0, 0), Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop, str(index + 1)

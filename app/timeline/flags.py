@@ -53,7 +53,7 @@ class FlagLane:
         if not flags:
             painter.setPen(QColor(colours.faint))
             middle = Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft
-            painter.drawText(box.adjusted(6, 0, 0, 0), middle, "looking…" if flags is None else "nothing to look at")
+            painter.drawText(box.adjusted(6, 0, 0, 0), middle, "looking…" if flags is None else "no flags")
         per_frame = box.width() / max(1e-9, view[1] - view[0])
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for mark in self.marks:

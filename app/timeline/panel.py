@@ -24,7 +24,7 @@ from app.timeline.visemes import VISEMES_PX, Place
 from app.timeline.waveform import draw_waveform
 from engine.take import timecode
 
-RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 76
+RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 66
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 SLACK_PX = 3  # a press that moves no farther is a click
 STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
@@ -32,7 +32,7 @@ LAYOUT = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES  # what may 
 SHOWN = LAYOUT | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 HINTS = {
-    "": "Drag to scrub. Shift-drag selects, the wheel zooms.",
+    "": "Minutes, seconds and frames. Drag to scrub, Shift-drag selects, the wheel zooms.",
     "audio": "Drag to move the sound against the face.",
     "spans": "Drag to mark a span, click one to choose it.",
     "visemes": "Drag the ends of a block, double-click to select it, right-click to change it.",
@@ -179,8 +179,9 @@ class Timeline(QWidget):
             time_s = index * step
             x = self.x_of(time_s * fps)
             painter.setPen(QColor(self._colours.quiet))
-            if x >= self._gutter + LABEL_PX / 2 - 6:  # the first would be cut in half
-                shown = f"{round(time_s * fps):,}" if self.in_frames else timecode(time_s, fps)
+            shown = f"{round(time_s * fps):,}" if self.in_frames else timecode(time_s, fps)
+            half = painter.fontMetrics().horizontalAdvance(shown) / 2
+            if self._gutter <= x - half and x + half <= self._gutter + self._span_px():  # none is cut
                 painter.drawText(QRectF(x - 50, 4, 100, 14), middle, shown)
             painter.setPen(QColor(self._colours.edge))
             painter.drawLine(int(x), 20, int(x), RULER_PX)

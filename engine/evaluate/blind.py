@@ -12,7 +12,7 @@ import numpy as np
 
 from engine.corpus import Piece
 from engine.errors import FormatError
-from engine.evaluate.inpaint import GUIDANCE, guided, holes
+from engine.evaluate.inpaint import GUIDANCE, Hole, guided, holes
 from engine.formats.textfile import read_text
 from engine.inpaint.infer import bundled
 from engine.take import MODEL_FPS, Take
@@ -41,11 +41,12 @@ def exhibits(pieces: Sequence[Piece], *, seed: int = 0, count: int = COUNT) -> l
     """
     rng = np.random.default_rng(seed)
     faces = [piece for piece in pieces if piece.whole_face]
-    shown = []
+    shown: list[tuple[Take, str, float, str]] = []
+    seen: list[Hole] = []
     for index in range(count):
         span, kind = SPANS_S[index // 2 % len(SPANS_S)], GUIDANCE[index // 2 % len(GUIDANCE)]
-        found = holes(faces, round(span * MODEL_FPS), count)
-        hole = found[int(rng.integers(len(found)))]
+        hole = _fresh(holes(faces, round(span * MODEL_FPS), 4 * count), seen, rng)
+        seen.append(hole)
         answer = ANSWERS[index % 2]
         filled = answer == "filled"
         weights = bundled().fill(guided(hole, kind, rng), seeds=(index,))[0] if filled else hole.truth
@@ -53,6 +54,19 @@ def exhibits(pieces: Sequence[Piece], *, seed: int = 0, count: int = COUNT) -> l
         shown.append((Take(weights[first:last], MODEL_FPS), answer, span, kind if filled else "none"))
     order = rng.permutation(len(shown))
     return [Exhibit(f"{place + 1:02d}", *shown[which]) for place, which in enumerate(order)]
+
+
+def _fresh(found: Sequence[Hole], seen: Sequence[Hole], rng: np.random.Generator) -> Hole:
+    """Return one of many holes that shares least with those seen: a stretch shown twice gives its filled copy away."""
+    shared = [sum(_shared(hole, other) for other in seen) for hole in found]
+    least = np.flatnonzero(np.array(shared) == min(shared))
+    return found[int(rng.choice(least))]
+
+
+def _shared(hole: Hole, other: Hole) -> int:
+    """Return how many frames two holes have in common."""
+    first, stop = max(hole.start, other.start), min(hole.start + len(hole.rows), other.start + len(other.rows))
+    return max(0, stop - first) if hole.piece == other.piece else 0
 
 
 def key_of(sheet: Sequence[Exhibit]) -> str:

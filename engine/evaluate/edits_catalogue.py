@@ -11,7 +11,7 @@ from scipy.signal import find_peaks
 
 from engine.controls import CONTROL_INDEX, bundled_measurer
 from engine.corpus import Piece
-from engine.editing import ease
+from engine.easing import ease
 from engine.regress.areas import AREAS
 from engine.take import SHAPES, Array, Mask, runs
 

@@ -48,10 +48,15 @@ _GUIDED = {
 
 @dataclass(frozen=True, eq=False)
 class Hole:
-    """Truth with a hole: `truth`, (frames, 52), and `mask`, (frames, 52) true where motion is to be made."""
+    """Truth with a hole: `truth`, (frames, 52), and `mask`, (frames, 52) true where motion is to be made.
+
+    The hole begins at frame `start` of the `piece`-th piece.
+    """
 
     truth: Array
     mask: Mask
+    piece: int
+    start: int
 
     @property
     def rows(self) -> np.ndarray:
@@ -67,18 +72,19 @@ class Hole:
 def holes(pieces: Sequence[Piece], frames: int, most: int = MOST) -> list[Hole]:
     """Return holes at evenly spread places of the pieces; of the mouth alone where only it moves."""
     places = [
-        (piece, start)
-        for piece in pieces
+        (index, start)
+        for index, piece in enumerate(pieces)
         for start in range(_MARGIN, len(piece.weights) - frames - _MARGIN, max(frames // 2, 15))
     ]
     chosen = [places[i] for i in np.unique(np.linspace(0, len(places) - 1, most).round().astype(int))] if places else []
     found = []
-    for piece, start in chosen:
+    for index, start in chosen:
+        piece = pieces[index]
         first, last = max(0, start - _CONTEXT), min(len(piece.weights), start + frames + _CONTEXT)
         truth = piece.weights[first:last]
         mask = np.zeros(truth.shape, bool)
         mask[start - first : start - first + frames, REGIONS["face" if piece.whole_face else "lower"]] = True
-        found.append(Hole(truth, mask))
+        found.append(Hole(truth, mask, index, start))
     return found
 
 

@@ -25,7 +25,8 @@ EYES_MM = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0)
 LIPS = [CONTROL_INDEX["lips_vertical"]]
 LIDS = [CONTROL_INDEX["eyelid_right"], CONTROL_INDEX["eyelid_left"]]
 
-Method = Callable[[Array], Array]  # controls, (frames, 8) in mm -> weights, (frames, 52)
+# Controls, (frames, 8) in mm, and the weights of shapes that no method makes, (frames, 52), to weights, (frames, 52).
+Method = Callable[[Array, Array], Array]
 Row = dict[str, Any]
 Report = Callable[[str], None]
 
@@ -41,16 +42,30 @@ def methods(report: Report) -> dict[str, Method]:
     """Return every method by row name; those that need the recorded takes only where these are."""
     ours = infer.bundled()
     found: dict[str, Method] = {
-        "regressor": lambda controls: ours.infer(controls, full=False),
-        "full": ours.infer,
+        "regressor": lambda controls, _: ours.infer(controls, full=False),
+        "full": lambda controls, kept: ours.infer(controls, kept=kept),
+        "full_without_contacts": lambda controls, _: ours.infer(controls, land=False),
     }
     for name in NAMES:
-        found[name] = importlib.import_module(f"engine.evaluate.baselines.{name}").load().infer
+        found[name] = of_controls(importlib.import_module(f"engine.evaluate.baselines.{name}").load().infer)
     try:
-        found["nearest"] = Nearest(split(data_folder())[0]).infer
+        found["nearest"] = of_controls(Nearest(split(data_folder())[0]).infer)
     except EngineError:
         report("nearest is left out: it is the recorded training takes themselves, which are not here (RETAKE_DATA)")
     return found
+
+
+def of_controls(infer: Callable[[Array], Array]) -> Method:
+    """Return a method that looks at controls alone."""
+    return lambda controls, _: infer(controls)
+
+
+def kept_of(piece: Piece) -> Array:
+    """Return a piece's weights, (frames, 52), with the shapes of all areas zero: what an edit leaves as it was."""
+    kept = np.array(piece.weights)
+    for area in AREAS:
+        kept[:, area.shape_columns] = 0.0
+    return kept
 
 
 def played(method: Method, piece: Piece) -> Array:
@@ -58,7 +73,7 @@ def played(method: Method, piece: Piece) -> Array:
 
     Weights are held to 0..1, as the editor holds them; shapes of no area, gaze among them, stay as recorded.
     """
-    made = method(bundled_measurer().measure(piece.weights))
+    made = method(bundled_measurer().measure(piece.weights), kept_of(piece))
     whole = np.array(piece.weights)
     for area in AREAS:
         if piece.whole_face or not area.needs_whole_face:
@@ -118,4 +133,4 @@ def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
     return regress_figures.draw(data, folder, report)
 
 
-__all__ = ["EYES_MM", "MOUTH_MM", "measured_closures", "methods", "pieces_to_measure", "played", "table"]
+__all__ = ["EYES_MM", "MOUTH_MM", "kept_of", "measured_closures", "methods", "pieces_to_measure", "played", "table"]

@@ -12,7 +12,7 @@ from engine.anatomy import impossible
 from engine.controls import bundled_measurer
 from engine.corpus import Piece, data_folder, split, whole_faces
 from engine.evaluate.plausibility import Recorded, recorded
-from engine.evaluate.regress import Method, Report, methods, pieces_to_measure
+from engine.evaluate.regress import Method, Report, kept_of, methods, pieces_to_measure
 from engine.regress.areas import AREAS
 from engine.take import SHAPES, Array
 
@@ -62,18 +62,11 @@ def table(data: Path | None, report: Report) -> list[Row]:
     Weights are held to 0..1, as the editor holds them.
     """
     pieces = pieces_to_measure(data)
-    training = split(data_folder())[0]
-    banks = {
-        part: recorded([p.weights for p in (whole_faces(training) if part == "eyes" else training)], columns)
-        for part, columns in PARTS.items()
-    }
-    base = _figures([piece.weights for piece in pieces], pieces, banks)
-    rows: list[Row] = [{"method": "recorded", "request": "none"} | base | {"times_recorded": 1.0}]
+    judge = Judge(pieces, split(data_folder())[0])
+    rows: list[Row] = [{"method": "recorded", "request": "none"} | judge.base | {"times_recorded": 1.0}]
     for name, method in methods(report).items():
         for request, ask in REQUESTS.items():
-            figures = _requested(method, ask, pieces, banks)
-            ratios = [figures[key] / base[key] for key in ("unlike_mouth_mm", "unlike_eyes_mm") if base.get(key)]
-            rows.append({"method": name, "request": request} | figures | {"times_recorded": float(np.mean(ratios))})
+            rows.append({"method": name, "request": request} | judge.figures(method, ask))
         report(f"measured {name}")
     return rows
 
@@ -81,21 +74,43 @@ def table(data: Path | None, report: Report) -> list[Row]:
 def requested(method: Method, ask: Request, piece: Piece) -> tuple[Array, Array]:
     """Return what was asked, (frames, 8) in mm, and the face a method makes of it, (frames, 52)."""
     asked = ask(bundled_measurer().measure(piece.weights))
-    made = np.clip(method(asked), 0.0, 1.0)
+    made = np.clip(method(asked, kept_of(piece)), 0.0, 1.0)
     whole = np.array(piece.weights)
     for columns in (PARTS["mouth"], PARTS["eyes"]) if piece.whole_face else (PARTS["mouth"],):
         whole[:, columns] = made[:, columns]
     return asked, whole
 
 
-def _requested(method: Method, ask: Request, pieces: Sequence[Piece], banks: dict[str, Recorded]) -> Row:
-    results = [requested(method, ask, piece) for piece in pieces]
-    figures = _figures([made for _, made in results], pieces, banks)
-    missed = [
-        (bundled_measurer().measure(made) - asked)[:, slice(None) if piece.whole_face else MOUTH].reshape(-1)
-        for (asked, made), piece in zip(results, pieces, strict=True)
-    ]
-    return figures | {"missed_mm": float(np.sqrt((np.concatenate(missed) ** 2).mean()))}
+class Judge:
+    """How far the faces that a method makes of requests are from recorded ones, beside pieces as they were recorded.
+
+    Parameters
+    ----------
+    pieces : whose controls are changed into requests
+    training : recordings among which the nearest are looked for
+    """
+
+    def __init__(self, pieces: Sequence[Piece], training: Sequence[Piece]) -> None:
+        self._pieces = pieces
+        self._banks = {
+            part: recorded([p.weights for p in (whole_faces(training) if part == "eyes" else training)], columns)
+            for part, columns in PARTS.items()
+        }
+        self.base = _figures([piece.weights for piece in pieces], pieces, self._banks)
+
+    def figures(self, method: Method, ask: Request) -> Row:
+        """Return what a row of `table` says of a method and a request."""
+        results = [requested(method, ask, piece) for piece in self._pieces]
+        figures = _figures([made for _, made in results], self._pieces, self._banks)
+        missed = [
+            (bundled_measurer().measure(made) - asked)[:, slice(None) if piece.whole_face else MOUTH].reshape(-1)
+            for (asked, made), piece in zip(results, self._pieces, strict=True)
+        ]
+        ratios = [figures[key] / self.base[key] for key in ("unlike_mouth_mm", "unlike_eyes_mm") if self.base.get(key)]
+        return figures | {
+            "missed_mm": float(np.sqrt((np.concatenate(missed) ** 2).mean())),
+            "times_recorded": float(np.mean(ratios)),
+        }
 
 
 def _figures(made: Sequence[Array], pieces: Sequence[Piece], banks: dict[str, Recorded]) -> Row:

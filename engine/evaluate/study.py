@@ -6,6 +6,7 @@ than those of the networks that ship. `retake train regress_study` runs them ane
 
 from __future__ import annotations
 
+import copy
 import json
 import tempfile
 from collections.abc import Callable, Sequence
@@ -14,13 +15,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 
 from engine.corpus import Piece, load_takes, pieces_of, split, whole_faces
 from engine.errors import AssetError
 from engine.evaluate.baselines import ridge
 from engine.evaluate.baselines.nearest import Nearest
 from engine.evaluate.baselines.parts import Areas, Material
-from engine.evaluate.regress import Method, figures_of
+from engine.evaluate.regress import Method, figures_of, of_controls
+from engine.evaluate.regress_edits import REQUESTS, Judge
 from engine.formats.atomic import write_bytes
 from engine.models.checkpoint import MODELS
 from engine.performance.augment import Levers
@@ -54,6 +57,8 @@ TERMS: dict[str, dict[str, Any]] = {
     "distance loss": {"distance_share": 0.0},
     "velocity loss": {"velocity_share": 0.0},
 }
+USES = ("without contacts", "without tempering")  # what is done when the networks are used, not when they are trained
+EDITS = ("x3", "contradictory", "salt_and_pepper")
 CARD = MODELS / "regress_lower.card.json"
 
 
@@ -66,7 +71,15 @@ def _networks(training: Sequence[Piece], held: Sequence[Piece], settings: Settin
                 path = Path(folder) / f"{area.name}.safetensors"
                 networks[area.name], _ = train_area(area, training, held, settings, path=path, report=lambda _: None)
     made = Regressor(networks)
-    return {"regressor": lambda controls: made.infer(controls, full=False), "full": made.infer}
+    unbound = Regressor({name: copy.deepcopy(network) for name, network in networks.items()})
+    for network in unbound.networks.values():
+        network.bound.fill_(torch.inf)
+    return {
+        "regressor": lambda controls, _: made.infer(controls, full=False),
+        "full": lambda controls, kept: made.infer(controls, kept=kept),
+        "without contacts": lambda controls, kept: made.infer(controls, kept=kept, land=False),
+        "without tempering": lambda controls, kept: unbound.infer(controls, kept=kept),
+    }
 
 
 def _ridge(training: Sequence[Piece], settings: Settings) -> Method:
@@ -75,7 +88,7 @@ def _ridge(training: Sequence[Piece], settings: Settings) -> Method:
         made = material_of(area, training, settings)
         pieces = [piece.weights for piece in (whole_faces(training) if area.needs_whole_face else training)]
         materials.append(Material(area, made, cut(pieces, length=settings.window, overlap=0.0)))
-    return Areas(ridge.train(materials, lambda _: None)[0], alignment=1).infer
+    return of_controls(Areas(ridge.train(materials, lambda _: None)[0], alignment=1).infer)
 
 
 def takes(data: Path, report: Report) -> list[Row]:
@@ -86,9 +99,12 @@ def takes(data: Path, report: Report) -> list[Row]:
     for name in names:
         held = [piece for piece in pieces if piece.source == name]
         training = [piece for piece in pieces if piece.source != name]
-        methods = _networks(training, held, SHORT) | {
+        made = _networks(training, held, SHORT)
+        methods = {
+            "regressor": made["regressor"],
+            "full": made["full"],
             "ridge": _ridge(training, SHORT),
-            "nearest": Nearest(training).infer,
+            "nearest": of_controls(Nearest(training).infer),
         }
         for method, infer in methods.items():
             rows.append({"method": method, "take": name} | figures_of(infer, held))
@@ -112,7 +128,8 @@ def _summary(rows: Sequence[Row]) -> list[Row]:
 def levers(data: Path, report: Report) -> list[Row]:
     """Return figures of the full system, and the regressor's errors, with every lever and with each one left out.
 
-    Measured on two training takes that these trainings do not see; the test split plays no part.
+    `times_recorded_*` is that of `regress_edits`. Measured on two training takes that these trainings do not see; the
+    test split plays no part.
     """
     training, validation, _ = split(data)
     held = [piece for piece in training + validation if piece.source in LEFT_OUT]
@@ -124,15 +141,21 @@ def levers(data: Path, report: Report) -> list[Row]:
     bare = {area: replace(one, synthetic_minutes=0.0) for area, one in SHORT.recipes.items()}
     variants[f"without {SYNTHETIC}"] = replace(SHORT, recipes=bare)
     variants |= {f"without {name}": replace(SHORT, **change) for name, change in TERMS.items()}
+    judge = Judge(held, seen)
     rows: list[Row] = []
     for name, settings in variants.items():
         methods = _networks(seen, held, settings)
-        only = {
-            f"regressor_{key}": value for key, value in figures_of(methods["regressor"], held).items() if "mse" in key
-        }
-        rows.append({"name": name} | figures_of(methods["full"], held) | only)
+        rows.append(_lever(name, methods["full"], methods["regressor"], held, judge))
+        if name == "all":
+            rows += [_lever(one, methods[one], methods["regressor"], held, judge) for one in USES]
         report(f"{name}: " + ", ".join(f"{key} {value:.4f}" for key, value in rows[-1].items() if "mse" in key))
     return rows
+
+
+def _lever(name: str, full: Method, regressor: Method, held: Sequence[Piece], judge: Judge) -> Row:
+    only = {f"regressor_{key}": value for key, value in figures_of(regressor, held).items() if "mse" in key}
+    edits = {f"times_recorded_{ask}": judge.figures(full, REQUESTS[ask])["times_recorded"] for ask in EDITS}
+    return {"name": name} | figures_of(full, held) | only | edits
 
 
 def train(data: Path, out: Path = MODELS, report: Report = print) -> None:

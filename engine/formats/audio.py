@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.formats import film
+from engine.formats.content import require_file, unread
 
 if TYPE_CHECKING:
     import soundfile
@@ -217,6 +218,7 @@ def _recorded(path: Path) -> Iterator[tuple[int, Samples]]:
     """Yield rate and decoded parts until the file really ends, whatever length its header gives."""
     import soundfile
 
+    require_file(path, at_most=film.MAX_BYTES)
     try:
         with soundfile.SoundFile(os.fspath(path)) as file:
             _require_playable(file, path)
@@ -225,7 +227,7 @@ def _recorded(path: Path) -> Iterator[tuple[int, Samples]]:
     except (soundfile.SoundFileError, RuntimeError, TypeError, ValueError) as error:
         raise FormatError(f"{path.name} could not be read as sound.", EXPECTED) from error
     except OSError as error:
-        raise FormatError(f"{path.name} could not be read: {(error.strerror or str(error)).lower()}.") from error
+        raise unread(path, error) from error
 
 
 def _filmed(path: Path) -> Iterator[tuple[int, Samples]]:

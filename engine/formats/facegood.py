@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from engine.errors import FormatError
+from engine.formats.archive import arrays_of
 from engine.take import SHAPE_INDEX, SHAPES, Take
 
 MAX_FRAMES = 10_000_000
@@ -19,10 +20,10 @@ def read(path: Path) -> Take:
     Only the mouth and jaw are animated in these takes: all other shapes are zero. Raises `FormatError`.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
-            curves = {str(name): archive["weights"][:, i] for i, name in enumerate(archive["names"])}
-            fps = float(archive["fps"])
-    except (OSError, KeyError, ValueError, IndexError) as error:
+        archive = arrays_of(path, ("weights", "names", "fps"))
+        curves = {str(name): archive["weights"][:, i] for i, name in enumerate(archive["names"])}
+        fps = float(archive["fps"])
+    except (FormatError, KeyError, ValueError, IndexError, TypeError) as error:
         raise FormatError(f"{path.name} is not a FACEGOOD animation archive.") from error
     frames = len(next(iter(curves.values())))
     weights = np.zeros((frames, len(SHAPES)))

@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.errors import FormatError
+from engine.formats.content import require_file
 
 if TYPE_CHECKING:
     from av.container import InputContainer
 
 ENDINGS = (".mov", ".mp4", ".m4v", ".mkv", ".webm", ".avi")
 FAMILIES = "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi"  # no play lists: those name other files and addresses
+MAX_BYTES = 1 << 44  # a film is never read whole
 EXPECTED = "Retake reads MOV, MP4, MKV, WebM and AVI files."
 
 
@@ -19,6 +21,7 @@ def open_film(path: Path) -> InputContainer:
     """Open a film; raises `FormatError` with one plain sentence."""
     import av
 
+    require_file(path, at_most=MAX_BYTES)
     options = {"format_whitelist": FAMILIES, "protocol_whitelist": "file"}
     try:
         return av.open(f"file:{path.resolve()}", container_options=options)

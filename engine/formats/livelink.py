@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
+from engine.formats.content import content_of
 from engine.formats.decimals import floats
 from engine.formats.livelink_table import table
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take
@@ -30,6 +31,7 @@ TICKS_PER_SECOND = 60.0  # the frame field counts sixtieths of a second, even in
 DAY_S = 86400.0
 MAX_COLUMNS = 1024
 MAX_HEADER_BYTES = 64 * 1024
+LARGEST = 1e4  # a weight or an angle beyond this is damage; generators that count in percent stay below
 MAX_INSERTED_SHARE = 1.0  # more missed frames than recorded ones means that the clock is not to be believed
 FALLBACK_FPS = 30.0
 BLOCK_ROWS = 4096  # of timecodes read at once
@@ -93,7 +95,7 @@ def read(
     timecodes, values, lost = table(content, begin, header, path, report)
     if lost.all():
         raise FormatError(f"{path.name} holds no frame with a face.", "The tracker lost the face in every row.")
-    _require_finite(values, header, path)
+    _require_possible(values, header, path)
     clock = _clock(timecodes, fps)
     take_weights, take_lost, rotations = _resample(values, lost, clock, columns, swap=swap)
     decimals = _decimals(content, begin)
@@ -192,10 +194,7 @@ def _recorded_name(shape: str, *, swapped: bool) -> str:
 
 
 def _content(path: Path) -> bytes:
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+    content = content_of(path)
     if not content or content.isspace():
         raise FormatError(f"{path.name} is empty.", EXPECTED)
     return content.removeprefix(b"\xef\xbb\xbf")
@@ -229,13 +228,21 @@ def _columns(header: list[str], path: Path) -> dict[str, int]:
     return columns
 
 
-def _require_finite(values: Array, header: list[str], path: Path) -> None:
+def _require_possible(values: Array, header: list[str], path: Path) -> None:
     bad = np.argwhere(~np.isfinite(values))
     if len(bad):
         row, column = bad[0]
         raise FormatError(
             f"{path.name} has a value that is not a finite number in row {row + 2}, column {column + 3} "
             f"({header[column + 2][:40]})."
+        )
+    huge = np.argwhere(np.abs(values) > LARGEST)
+    if len(huge):
+        row, column = huge[0]
+        raise FormatError(
+            f"{path.name} has {values[row, column]:g} in row {row + 2}, column {column + 3} "
+            f"({header[column + 2][:40]}), which no face can do.",
+            "Weights lie in 0..1.",
         )
 
 

@@ -11,6 +11,8 @@ from engine.errors import EditError, FormatError
 from engine.take import Array
 
 ENDINGS = (".csv", ".tsv", ".trc", ".c3d")
+FARTHEST_MM = 1e8
+SLOWEST_FPS, FASTEST_FPS = 0.01, 10_000.0
 TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
 
 
@@ -39,8 +41,13 @@ class Markers:
         twice = [name for index, name in enumerate(self.names) if name in self.names[:index]]
         if twice:
             raise EditError(f"The marker {twice[0]!r} is there twice.", "Rename or remove one of the two.")
-        if np.isinf(self.positions).any() or not (np.isfinite(self.fps) and self.fps > 0):
-            raise EditError("A capture needs finite positions and a frame rate above zero.")
+        if (np.abs(self.positions) > FARTHEST_MM).any():
+            raise EditError("A marker is further away than a face can be.", "Check the unit of the file.")
+        if not SLOWEST_FPS <= self.fps <= FASTEST_FPS:
+            raise EditError(
+                f"A capture needs a frame rate above zero and below {FASTEST_FPS:,.0f}; this one has {self.fps:g}.",
+                "Export it again with its rate.",
+            )
 
     def __len__(self) -> int:
         return len(self.positions)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from engine.errors import FormatError
+from engine.formats.content import require_file, unread
 from engine.formats.markers import TO_MM, Markers
 
 EXPECTED = "Retake reads C3D files with labelled points."
@@ -39,12 +40,13 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
 
 def _check_sizes(path: Path) -> None:
     """Compare what the header declares with the size of the file, before a parser allocates it."""
+    require_file(path)
     try:
         size = path.stat().st_size
         with path.open("rb") as file:
             header = file.read(HEADER_BYTES)
     except OSError as error:
-        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+        raise unread(path, error) from error
     if len(header) < HEADER_BYTES or header[1] != 0x50:
         raise FormatError(f"{path.name} is not a C3D file.", EXPECTED)
     points, _, first, last = struct.unpack_from("<HHHH", header, 2)

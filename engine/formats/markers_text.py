@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from engine.errors import FormatError
+from engine.formats.content import content_of
 from engine.take import Array
 
 MAX_CELLS = 3 * 4096
@@ -16,10 +17,7 @@ MAX_HEADER_BYTES = 512 * 1024
 
 def lines_of(path: Path, expected: str) -> list[bytes]:
     """Return a text file's lines without their ends; raises `FormatError` where it is empty, unreadable or no text."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+    content = content_of(path)
     if not content.strip():
         raise FormatError(f"{path.name} is empty.", expected)
     if b"\x00" in content[:MAX_HEADER_BYTES]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from engine.inpaint.regions import REGIONS
 from engine.performance.augment import LOWER, Levers, augment
 from engine.performance.corpus import random_script
 from engine.performance.performer import perform, phones
+from engine.speech import allphone
 from engine.speech.lipread import read_lips
 from engine.speech.visemes import Cue, classes_over, one_hot
 from engine.take import MODEL_FPS, SHAPES, Array, Mask
@@ -49,13 +51,16 @@ class Help:
     levers: Levers = field(default_factory=Levers)
     synthetic_minutes: float = 12.0
     read_lips: bool = True
+    heard_copies: int = 2  # of each piece with sound, labelled by ear instead of by eye
 
 
-def performances(pieces: Sequence[Piece], help_: Help, rng: np.random.Generator) -> list[Performance]:
+def performances(
+    pieces: Sequence[Piece], help_: Help, rng: np.random.Generator, heard: Mapping[str, Sequence[Cue]] | None = None
+) -> list[Performance]:
     """Return recorded pieces with their variants, and synthetic performances.
 
     Pieces that animate the mouth alone are given the upper face of another take: half a face that never moves would
-    teach the network that faces do not.
+    teach the network that faces do not. `heard` are the phones of takes with sound, by their name.
     """
     faces = [piece.weights for piece in whole_faces(pieces)]
     recorded = [piece.weights if piece.whole_face else _completed(piece.weights, faces, rng) for piece in pieces]
@@ -64,7 +69,24 @@ def performances(pieces: Sequence[Piece], help_: Help, rng: np.random.Generator)
         Performance(weights, read_lips(weights, fps=MODEL_FPS) if help_.read_lips else np.full(len(weights), -1))
         for weights in varied
     ]
+    for piece, weights in zip(pieces, recorded, strict=True):
+        if heard and piece.source in heard and len(weights) >= SHORTEST:
+            made += [Performance(weights, said_in(piece, heard[piece.source]))] * help_.heard_copies
     return made + synthetic(help_.synthetic_minutes, rng)
+
+
+def said_in(piece: Piece, cues: Sequence[Cue]) -> np.ndarray:
+    """Return the viseme class of each frame of a piece, (frames,) int, by the cues of the take that it was cut from."""
+    begin = piece.first / MODEL_FPS
+    moved = [Cue(cue.start_s - begin, cue.stop_s - begin, cue.label) for cue in cues]
+    return classes_over(moved, frames=len(piece.weights), fps=MODEL_FPS)
+
+
+def listened(folder: Path) -> dict[str, list[Cue]]:
+    """Return the phones heard in the sound beside takes below a folder, by name; none without PocketSphinx."""
+    if not allphone.available():
+        return {}
+    return {path.stem: allphone.listen(path) for path in sorted(folder.rglob("*.wav"))}
 
 
 def synthetic(minutes: float, rng: np.random.Generator) -> list[Performance]:
@@ -131,11 +153,12 @@ def random_hole(frames: int, rng: np.random.Generator) -> Mask:
     """Return (frames, 52) true where motion is to be made: one to three spans of one region, or everything."""
     hole = np.zeros((frames, len(SHAPES)), bool)
     region = REGIONS["face" if rng.random() < 0.6 else str(rng.choice(list(REGIONS)))]
-    if rng.random() < 0.12:
+    if rng.random() < 0.18:
         hole[:, region] = True
         return hole
     for _ in range(int(rng.choice([1, 2, 3], p=[0.5, 0.3, 0.2]))):
-        length = int(np.exp(rng.uniform(np.log(2), np.log(0.8 * frames))))
+        longest = 0.8 * frames
+        length = int(np.exp(rng.uniform(np.log(2), np.log(longest))) if rng.random() < 0.5 else rng.uniform(2, longest))
         start = int(rng.integers(-length // 4, frames - 3 * length // 4))
         hole[np.ix_(np.arange(max(0, start), min(frames, start + length)), np.flatnonzero(region))] = True
     return hole

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 import torch
+from scipy.signal import lfilter
 from torch import Tensor, nn
 from torch.nn.utils.parametrizations import spectral_norm
 
@@ -13,14 +15,25 @@ from engine.models.distances import SIX, Distances
 from engine.take import SHAPES
 
 _WIDEST = 8.0  # spreads; beyond it a feature tells nothing more
+# Frames over which each curve of noise forgets itself: from jitter to moods, so that a span of any length changes its mind.
+MEMORY_FRAMES = (0.0, 4.0, 8.0, 15.0, 30.0, 30.0, 90.0, 90.0)
+
+
+def noise_curves(frames: int, rng: np.random.Generator) -> np.ndarray:
+    """Return what a fill is drawn from, (frames, 8) float32: Ornstein-Uhlenbeck curves of unit variance."""
+    keep = np.exp(-1 / np.maximum(MEMORY_FRAMES, 1e-9))
+    shocks = rng.standard_normal((frames, len(keep)))
+    shocks[1:] *= np.sqrt(1 - keep**2)
+    curves = [lfilter([1.0], [1.0, -k], shock) for k, shock in zip(keep, shocks.T, strict=True)]
+    return np.stack(curves, axis=1).astype(np.float32)
 
 
 @dataclass(frozen=True)
 class GeneratorConfig:
-    """Sizes of the generator: paper values, with four noise curves where it has one."""
+    """Sizes of the generator: paper values, with several curves of noise where it has one."""
 
     features: int = FEATURES
-    noise: int = 4
+    noise: int = len(MEMORY_FRAMES)
     hidden: int = 128
     layers: int = 2
     dropout: float = 0.3

@@ -16,6 +16,7 @@ from engine.speech.visemes import Cue, class_of
 from engine.take import SHAPES, Array, Take
 
 LOWEST, HIGHEST = -0.1, 1.1  # recorded weights stray a little outside 0..1
+FARTHEST_MM = 1000.0  # more than this is a slip; far more would overflow
 Style = Literal["auto", "bridge", "perform"]
 STYLES: tuple[Style, ...] = ("auto", "bridge", "perform")
 
@@ -122,6 +123,6 @@ def _curve(name: str, curve: Array | float, length: int) -> Array:
             f"The curve for {name} has {asked.size} values where the span has {length} frames.",
             "Give one value per frame of the span, or one for all.",
         )
-    if np.isinf(asked).any() or (asked < 0).any():
-        raise EditError(f"The curve for {name} asks for a distance that is negative or infinite.")
+    if (asked > FARTHEST_MM).any() or (asked < 0).any():
+        raise EditError(f"The curve for {name} asks for a distance that is negative or beyond {FARTHEST_MM:,.0f} mm.")
     return np.array(np.broadcast_to(asked.reshape(-1), (length,)))

@@ -15,8 +15,9 @@ from torch import Tensor
 from engine.corpus import Piece, split
 from engine.inpaint.gap import Statistics, ground, statistics_of
 from engine.inpaint.infer import Filler, save_filler
-from engine.inpaint.material import Help, Performance, draw, performances, random_gap
-from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, see
+from engine.inpaint.losses import Batch, Shares, fill_losses, scatter, spectrum_gap
+from engine.inpaint.material import Help, Performance, draw, listened, performances, random_gap
+from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, noise_curves, see
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
 from engine.models.distances import six_distances
 from engine.models.threads import one_thread
@@ -38,28 +39,10 @@ class Settings:
     shared_steps: int = 1400  # before the ways part: no adversary yet
     parted_steps: int = 1300
     filter_pace: float = 0.1  # of the filter's rate to the rest's: it has many inputs
-    value_share: float = 30.0  # on means, where the paper sums; with the terms below about as large as the adversary
-    velocity_share: float = 30.0
-    distance_share: float = 0.1  # per mm
-    adversary_share: float = 0.3
-    penalty: float = 10.0
-    spectrum_share: float = 150.0
+    shares: Shares = field(default_factory=Shares)
     judge_steps: int = 1  # of the discriminator for one of the generator
-    far_share: float = 0.1  # how much truth counts where nothing settles the pose; the rest is left to the adversary
     average: float = 0.995  # of the generator's weights over steps: the network that is kept
     help: Help = field(default_factory=Help)
-
-
-@dataclass(frozen=True)
-class Batch:
-    """Windows of truth and the ground under their fills; all (batch, frames, ...) float32."""
-
-    truth: Tensor
-    base: Tensor
-    rise: Tensor
-    features: Tensor
-    hole: Tensor
-    certainty: Tensor
 
 
 def make_batch(
@@ -74,40 +57,6 @@ def make_batch(
         hole = np.isnan(gap.known)
         rows.append((truth.weights, under.base, under.rise, under.features, hole, under.certainty[:, None]))
     return Batch(*(torch.tensor(np.stack(part), dtype=torch.float32) for part in zip(*rows, strict=True)))
-
-
-def fill_losses(made: Tensor, batch: Batch, distances: torch.nn.Module, settings: Settings) -> dict[str, Tensor]:
-    """Return per-window terms (batch,): values and distances (BSS20 equations 1 and 2) and velocities."""
-    trust = settings.far_share + (1 - settings.far_share) * batch.certainty
-    inside = batch.hole.amax(dim=2, keepdim=True)
-    room = batch.hole.sum(dim=(1, 2)).clamp(min=1)
-    off = (made - batch.truth) * trust
-    apart = (distances(made) - distances(batch.truth)) * inside * trust
-    return {
-        "values": settings.value_share * (off.abs() * batch.hole).sum(dim=(1, 2)) / room,
-        "velocities": settings.velocity_share * off.diff(dim=1).abs().sum(dim=(1, 2)) / room,
-        "distances": settings.distance_share * apart.abs().mean(dim=2).sum(dim=1) / inside.sum(dim=(1, 2)).clamp(min=1),
-    }
-
-
-def spectrum_gap(made: Tensor, batch: Batch, scale: Tensor) -> Tensor:
-    """Return how far the amplitudes of made motion in the holes are from the truth's, whatever their phases.
-
-    Mean over shapes, windows of two lengths and frequencies above zero, in units of the shapes' spread. A fill that
-    moves as much as the truth but at other moments costs nothing here, where an error per frame asks for stillness.
-    """
-    gaps = []
-    for length in (16, 64):
-        taper = torch.hann_window(length)
-        share = batch.hole.unfold(1, length, length // 4).mean(dim=3)  # (batch, windows, 52)
-        amplitudes = []
-        for motion in (made, batch.truth):
-            cut = (motion / scale).unfold(1, length, length // 4)  # (batch, windows, 52, length)
-            power = torch.fft.rfft((cut - cut.mean(dim=3, keepdim=True)) * taper).abs().square()[..., 1:]
-            inside = (power * share[..., None]).sum(dim=1) / share.sum(dim=1)[..., None].clamp(min=1e-6)
-            amplitudes.append(torch.sqrt(inside + 1e-4) / taper.sum())
-        gaps.append((amplitudes[0] - amplitudes[1]).abs().mean())
-    return torch.stack(gaps).mean()
 
 
 class Trainer:
@@ -148,14 +97,13 @@ class Trainer:
         torch.manual_seed(settings.seed * 1_000_003 + self.step)
         against = part and self._adversary
         self._pace(part)
-        batch = make_batch(
-            self._material, self.statistics, settings, rng, settings.batch // 2 if against else settings.batch
-        )
-        made = self._generate(batch)
-        losses = fill_losses(made, batch, self._distances, settings if against else _trusting(settings))
-        terms = {name: term.mean() for name, term in losses.items()}
+        size = settings.batch // 2 if against else settings.batch
+        batch = make_batch(self._material, self.statistics, settings, rng, size)
         if against:
-            terms = self._against(batch, made, losses)
+            terms = self._against(batch, *self._generate(batch, 2, rng))
+        else:
+            shares = replace(settings.shares, far=1.0)  # truth counts everywhere: nothing else would
+            terms = _means(fill_losses(self._generate(batch, 1, rng)[0], batch, self._distances, shares))
         self._make.zero_grad()
         torch.stack([term for name, term in terms.items() if not name.startswith("judge")]).sum().backward()  # type: ignore[no-untyped-call]
         torch.nn.utils.clip_grad_norm_(self.generator.parameters(), 1.0)
@@ -171,47 +119,44 @@ class Trainer:
         for group, pace in zip(self._make.param_groups, (1.0, self.settings.filter_pace), strict=True):
             group["lr"] = rate * pace
 
-    def _generate(self, batch: Batch) -> Tensor:
-        noise = torch.randn(len(batch.truth), 1, self.generator.config.noise).repeat(1, batch.truth.shape[1], 1)
-        noise[..., 0] = torch.randn(noise.shape[:2])  # one curve is new at every frame, the others hold all along
-        motion = self.generator(batch.features, noise)
+    def _generate(self, batch: Batch, copies: int, rng: np.random.Generator) -> Tensor:
+        """Fill each window `copies` times with different noise, (copies, batch, frames, 52)."""
+        size, frames = batch.truth.shape[:2]
+        noise = torch.from_numpy(np.stack([noise_curves(frames, rng) for _ in range(copies * size)]))
+        motion = self.generator(batch.features.repeat(copies, 1, 1), noise).unflatten(0, (copies, size))
         made: Tensor = batch.base + batch.rise * motion
         return made
 
-    def _against(self, batch: Batch, made: Tensor, losses: dict[str, Tensor]) -> dict[str, Tensor]:
+    def _against(self, batch: Batch, one: Tensor, other: Tensor) -> dict[str, Tensor]:
         """Let the discriminator learn, then return the generator's terms with its score (equations 2 and 3).
 
-        Each window is filled twice with different noise and only the better of the two is held to the truth by its full
-        amount: where several motions are believable, that leaves room for more than one of them.
+        Each window is filled twice with different noise, so that how fills differ can be held to how truths would.
         """
-        other = self._generate(batch)
-        others = fill_losses(other, batch, self._distances, self.settings)
-        real, hole = self._seen(batch.truth), batch.hole
-        sums = torch.stack([sum(losses.values()), sum(others.values())])  # type: ignore[list-item]
-        best = sums.argmin(dim=0)
-        terms = {
-            name: 0.5 * (0.5 * (term + others[name]) + torch.where(best == 0, term, others[name])).mean()
-            for name, term in losses.items()
-        }
-        fakes = [self._seen(made), self._seen(other)]
+        shares, fakes = self.settings.shares, [self._seen(one), self._seen(other)]
+        pair = [fill_losses(made, batch, self._distances, shares) for made in (one, other)]
+        terms = {name: (term + pair[1][name]).mean() / 2 for name, term in pair[0].items()}
         judged: dict[str, Tensor] = {}
         for _ in range(self.settings.judge_steps):
-            judged = self._judge_step(real, [fake.detach() for fake in fakes], hole)
-        score = torch.cat([self.discriminator(fake) for fake in fakes]).mean()
-        terms["adversary"] = -self.settings.adversary_share * score
-        apart = torch.stack([spectrum_gap(one, batch, self.generator.scale) for one in (made, other)]).mean()
-        return terms | {"spectrum": self.settings.spectrum_share * apart} | judged
+            judged = self._judge_step(self._seen(batch.truth), [fake.detach() for fake in fakes], batch.hole)
+        apart = torch.stack([spectrum_gap(made, batch, self.generator.scale) for made in (one, other)]).mean()
+        terms["adversary"] = -shares.adversary * self.discriminator(torch.cat(fakes)).mean()
+        terms["spectrum"] = shares.spectrum * apart
+        terms["scatter"] = shares.scatter * scatter(one, other, batch).mean()
+        return terms | judged
 
     def _judge_step(self, real: Tensor, fakes: list[Tensor], hole: Tensor) -> dict[str, Tensor]:
-        fake = fakes[0]
-        hinge = (1 - self.discriminator(real)).relu().mean()
-        for one in fakes:
-            hinge = hinge + (1 + self.discriminator(one)).relu().mean() / len(fakes)
+        """Take one step of the discriminator: each fill is judged beside the very truth that it stands in for.
+
+        All the rest of a window is alike in both and cancels out (Jolicoeur-Martineau 2018, relativistic pairs). Judged
+        apart, as in the paper, it learnt nothing in as many steps as there is time for: half of held pairs right, not 88 %.
+        """
+        lead = self.discriminator(real) - torch.stack([self.discriminator(fake) for fake in fakes])
+        hinge = (1 - lead).relu().mean()
         share = torch.rand(len(real), 1, 1)
-        between = (share * real + (1 - share) * fake).requires_grad_()
+        between = (share * real + (1 - share) * fakes[0]).requires_grad_()
         slope = torch.autograd.grad(self.discriminator(between).sum(), between, create_graph=True)[0]
         masked = slope * hole.amax(dim=2, keepdim=True)
-        penalty = self.settings.penalty * (masked.flatten(1).norm(dim=1) - 1).square().mean()
+        penalty = self.settings.shares.penalty * (masked.flatten(1).norm(dim=1) - 1).square().mean()
         self._judge.zero_grad()
         (hinge + penalty).backward()
         self._judge.step()
@@ -252,9 +197,8 @@ class Trainer:
         self.step = int(config["step"])
 
 
-def _trusting(settings: Settings) -> Settings:
-    """Return settings under which truth counts everywhere: without an adversary nothing else would."""
-    return replace(settings, far_share=1.0)
+def _means(losses: dict[str, Tensor]) -> dict[str, Tensor]:
+    return {name: term.mean() for name, term in losses.items()}
 
 
 def train(data: Path, out: Path = MODELS, settings: Settings | None = None, report: Report = print) -> dict[str, Any]:
@@ -266,7 +210,7 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
 
     settings = settings or Settings()
     training, validation, _ = split(data)
-    material = performances(training, settings.help, np.random.default_rng(settings.seed))
+    material = performances(training, settings.help, np.random.default_rng(settings.seed), listened(data))
     figures: dict[str, Any] = {}
     for name, adversary in (("inpaint", True), ("inpaint_feedforward", False)):
         trainer = Trainer(material, settings, adversary=adversary)

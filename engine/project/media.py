@@ -7,8 +7,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from engine.errors import FormatError
+from engine.formats.content import require_file, unread
 from engine.project.records import Media
+
+MAX_BYTES = 1 << 44  # a film is read in pieces
 
 
 @dataclass(frozen=True)
@@ -41,11 +43,11 @@ def name_of(media: Media) -> str:
 
 def attach(path: Path, folder: Path, *, kind: str, offset_s: float = 0.0) -> Media:
     """Return the record of a media file for a project in a folder; raises `FormatError` when it cannot be read."""
+    require_file(path, at_most=MAX_BYTES)
     try:
         digest = _digest(path)
     except OSError as error:
-        reason = (error.strerror or "unknown reason").lower()
-        raise FormatError(f"{path.name} could not be read: {reason}.") from error
+        raise unread(path, error) from error
     return placed(Media(kind, path.name, digest, offset_s), path, folder)
 
 

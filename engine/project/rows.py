@@ -128,10 +128,14 @@ def _read_take(database: sqlite3.Connection, budget: Budget) -> Take:
     _require(0 <= start_s <= 2 * DAY_S, "its time of day is not possible")
     weights = unpack(blobs[0], (frames, len(SHAPES)), "<f8", budget)
     rotations = unpack(blobs[2], (frames, ROTATIONS), "<f8", budget)
-    _require(bool(np.isfinite(rotations).all()), "a rotation is not a finite number")
+    _require(_possible(weights) and _possible(rotations), "a weight or rotation is not a finite number")
     lost = unpack(blobs[1], (frames,), "u1", budget) != 0
     origin = _read_origin(database, frames, budget)
     return Take(weights=weights, fps=fps, lost=lost, rotations=rotations, name=name, start_s=start_s, origin=origin)
+
+
+def _possible(values: Array) -> bool:
+    return bool((np.abs(values) <= MAX_WEIGHT).all())
 
 
 def _read_origin(database: sqlite3.Connection, frames: int, budget: Budget) -> Origin | None:
@@ -151,7 +155,7 @@ def _read_origin(database: sqlite3.Connection, frames: int, budget: Budget) -> O
     lost = unpack(blobs[3], (count,), "u1", budget) != 0
     _require(len(timecodes) == count and not any(b"," in code for code in timecodes), "a timecode is missing")
     _require(bool((np.diff(rows) > 0).all()) and rows[0] >= 0 and rows[-1] < frames, "its rows are out of order")
-    _require(bool(np.isfinite(values).all()) and not lost.all(), "a recorded value is not a finite number")
+    _require(_possible(values) and not lost.all(), "a recorded value is not a finite number")
     _require(0 <= decimals <= MAX_DECIMALS and newline in (b"\n", b"\r\n"), "the file it came from is not possible")
     return Origin(names, timecodes, rows.astype(np.int64), values, lost, decimals, newline, bool(swapped))
 
@@ -163,7 +167,7 @@ def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> It
     for index, (place, kind, title, inputs, start, frames, weights, controls, asked) in enumerate(found):
         _require(place == index and start >= 0 and 0 <= frames <= length - start, "an edit is out of place")
         rows = unpack(weights, (frames, len(SHAPES)), "<f8", budget)
-        _require(bool(np.isfinite(rows).all()), "an edit holds a weight that is not a finite number")
+        _require(_possible(rows), "an edit holds a weight that is not a finite number")
         made_from = _json(inputs, budget)
         _require(isinstance(made_from, dict), "an edit does not say what it was made from")
         if kind == MARK:

@@ -12,12 +12,14 @@ from pathlib import Path
 
 from engine.errors import EngineError, FormatError
 from engine.formats.atomic import replacement
+from engine.formats.content import require_file
 from engine.project import rows, schema
 from engine.project.blobs import Budget, DamagedError
 from engine.project.records import Contents, Summary
 
 ENDING = ".retake"
 MAX_BLOB_BYTES = 2**29
+MAX_FILE_BYTES = 2**36
 BESIDE = ("-wal", "-shm", "-journal")  # what SQLite lays beside a database
 STEP_PAGES = 512  # that are copied at a time, 2 MiB
 
@@ -46,8 +48,7 @@ class Project:
 
         Raises `FormatError` for a file that is damaged or no project, `InUseError` for one that is open elsewhere.
         """
-        if not path.is_file():
-            raise FormatError(f"{path.name} is not there.", "It may have been moved or renamed.")
+        require_file(path, at_most=MAX_FILE_BYTES)
         if not (os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)):
             with _copied(path) as copy, closing(_connect(copy, path.name)) as database:
                 return cls(path, _read(database, path), None)

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import torch
 from torch import Tensor, nn
+from torch.nn.functional import avg_pool1d, max_pool1d, pad
 
-# One U-Net feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 frames through its convolutions and up to 3 through pooling; two are stacked.
-REACH = 48
+LOOK = 8  # frames on either side that are scaled with an excess, and over which the scale comes and goes
+# One U-Net feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 frames through its convolutions and up to 3 through pooling; two are
+# stacked on what looks 2 * LOOK frames around, and 4 for median and velocity.
+REACH = 68
 ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
+BEYOND = 0.005  # share of recorded frames that the full system holds to be further out than a face goes
 
 
 @dataclass(frozen=True)
@@ -69,17 +74,24 @@ class AreaNetwork(nn.Module):
     """Autoencoder on regressor for one area: controls in mm -> weights; `full=False` stops at the regressor.
 
     The full system takes a control no further than the recorded faces went (`low`, `high`), and hands weights
-    in 0..1 to the autoencoder: what nobody's face can do is bounded before it is judged.
+    in 0..1 to the autoencoder: what nobody's face can do is bounded before it is judged. In use, controls are
+    `tempered` first; in training they are not, so that the autoencoder learns to mend more than it will meet.
     """
 
     low: Tensor
     high: Tensor
+    centre: Tensor
+    whiten: Tensor
+    bound: Tensor
 
     def __init__(self, regressor: UNetConfig, autoencoder: UNetConfig) -> None:
         super().__init__()
         self.regressor, self.autoencoder = UNet(regressor), UNet(autoencoder)
         self.register_buffer("low", torch.full((1, regressor.inputs, 1), -torch.inf))
         self.register_buffer("high", torch.full((1, regressor.inputs, 1), torch.inf))
+        self.register_buffer("centre", torch.zeros(1, regressor.inputs, 1))
+        self.register_buffer("whiten", torch.eye(2 * regressor.inputs))
+        self.register_buffer("bound", torch.tensor(torch.inf))
 
     def forward(self, controls: Tensor, *, full: bool = True) -> Tensor:
         """Return weights, (batch, shapes, frames), of controls, (batch, controls, frames) in mm."""
@@ -90,9 +102,49 @@ class AreaNetwork(nn.Module):
         cleaned: Tensor = self.autoencoder(self.regressor(bounded).clamp(0.0, 1.0))
         return cleaned
 
+    def tempered(self, controls: Tensor) -> tuple[Tensor, Tensor]:
+        """Return controls, (batch, controls, frames) in mm, scaled towards their mean where they outdo recorded ones.
+
+        Further out or faster than `bound`, in the metric of how recorded controls and their velocities vary together.
+        The motion around an excess is scaled as a whole and keeps its form; an excess too short to be motion, salt or
+        pepper, is scaled alone. Returned with the scale, (batch, 1, frames), 1 where nothing had to be done.
+        """
+        away = controls - self.centre
+        lasting = pad(away, (2, 2), mode="replicate").unfold(2, 5, 1).median(dim=-1).values
+        share = -max_pool1d(-self._share(lasting), 2 * LOOK + 1, stride=1, padding=LOOK)
+        share = avg_pool1d(pad(share, (LOOK, LOOK), mode="replicate"), 2 * LOOK + 1, stride=1)
+        share = torch.minimum(share, self._share(away))
+        return self.centre + away * share, share
+
+    def _share(self, away: Tensor) -> Tensor:
+        """Return by how much to scale each frame, (batch, 1, frames), for it to be within the bound."""
+        distance = (self.whiten @ _with_velocity(away)).norm(dim=1, keepdim=True)
+        share: Tensor = (self.bound / distance.clamp(min=1e-6)).clamp(max=1.0)
+        return share
+
+    @torch.no_grad()
+    def learn_bounds(self, controls: Tensor) -> None:
+        """Take the bounds from recorded controls, (windows, controls, frames) in mm."""
+        self.low.copy_(controls.amin(dim=(0, 2))[None, :, None])
+        self.high.copy_(controls.amax(dim=(0, 2))[None, :, None])
+        self.centre.copy_(controls.mean(dim=(0, 2))[None, :, None])
+        moving = _with_velocity(controls - self.centre).double().permute(0, 2, 1).flatten(0, 1)
+        covariance = moving.T @ moving / len(moving)
+        covariance += 0.01 * covariance.diagonal().diag()  # two lids are all but one control
+        whiten = torch.linalg.inv(torch.linalg.cholesky(covariance))
+        self.whiten.copy_(whiten)
+        distance = (moving @ whiten.T).norm(dim=1)
+        self.bound.copy_(distance.kthvalue(math.ceil((1 - BEYOND) * len(distance))).values)
+
     def config(self) -> dict[str, Any]:
         """Return what rebuilds this module."""
         return {"regressor": asdict(self.regressor.config), "autoencoder": asdict(self.autoencoder.config)}
+
+
+def _with_velocity(curves: Tensor) -> Tensor:
+    """Return curves, (batch, n, frames), and below them how they change over four frames."""
+    held = pad(curves, (2, 2), mode="replicate")
+    return torch.cat([curves, held[..., 4:] - held[..., :-4]], dim=1)
 
 
 def from_config(config: dict[str, Any]) -> AreaNetwork:

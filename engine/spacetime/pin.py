@@ -20,6 +20,8 @@ from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.system import Position, System
 from engine.take import SHAPES, Array, Mask, Take, runs
 
+FARTHEST_MM = 1000.0
+
 
 @dataclass(frozen=True)
 class Spreading:
@@ -185,8 +187,8 @@ def pose_reaching(take: Take, frame: int, controls: Mapping[str, float]) -> Arra
         raise EditError(f"Frame {frame} is not within the take, which has {len(take)} frames.")
     columns = np.array([control_index(name) for name in controls])
     asked = np.array([list(controls.values())], float)
-    if not np.isfinite(asked).all():
-        raise EditError("A control is pinned to something that is not a finite number.")
+    if not (np.abs(asked) <= FARTHEST_MM).all():
+        raise EditError(f"A control is pinned to something that is not a number within {FARTHEST_MM:,.0f} mm.")
     here = take.weights[frame : frame + 1]
     every = np.ones(len(SHAPES), bool)
     return np.asarray(exact.project(here, asked, columns, bundled_measurer(), free=every)[0])

@@ -41,7 +41,7 @@ class Matching:
 
     alpha: float = 0.005
     beta: float = 0.1
-    closure: float = 3.0
+    closure: float = 10.0
     bounds: Bounds | None = field(default_factory=Bounds)
 
 

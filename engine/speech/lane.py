@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from engine.errors import EditError
-from engine.speech.visemes import NAMES, Cue, begun_at, class_of
+from engine.speech.visemes import NAMES, Cue, begun_at, class_of, require_time
 from engine.take import Array
 
 LEAST_S = 0.01  # what a boundary leaves of a cue: what mouth-cue files resolve
@@ -154,9 +154,8 @@ def renamed(lane: VisemeLane, index: int, label: str) -> VisemeLane:
 
 
 def shifted(lane: VisemeLane, offset_s: float) -> VisemeLane:
-    """Let the file begin at another time of the take; raises `EditError` for one that is not finite."""
-    if not np.isfinite(offset_s):
-        raise EditError("The visemes can only be shifted by a finite number of seconds.")
+    """Let the file begin at another time of the take; raises `EditError` for one that is no time."""
+    require_time(offset_s)
     return replace(lane, offset_s=float(offset_s))
 
 

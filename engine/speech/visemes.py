@@ -34,6 +34,7 @@ CLASSES: dict[str, tuple[str, ...]] = {
 }
 NAMES: tuple[str, ...] = tuple(CLASSES)
 # Aligners that write IPA, as far as its symbols are not ARPAbet letters already.
+FARTHEST_S = 3e7
 _IPA = {
     "sil": " spn ∅",
     "ao": "ɔ ɔj ɔɪ ɒ",
@@ -82,8 +83,15 @@ def class_of(label: str) -> int:
     return INDEX[plain]
 
 
+def require_time(offset_s: float) -> None:
+    """Raise `EditError` where visemes cannot begin at so many seconds of a take."""
+    if not abs(offset_s) < FARTHEST_S:
+        raise EditError("The visemes can only be shifted by a finite number of seconds, less than a year.")
+
+
 def begun_at(cues: Sequence[Cue], offset_s: float) -> tuple[Cue, ...]:
-    """Return the cues of a file that begins at a time of the take."""
+    """Return the cues of a file that begins at a time of the take; raises `EditError` for one that is no time."""
+    require_time(offset_s)
     return tuple(Cue(cue.start_s + offset_s, cue.stop_s + offset_s, cue.label) for cue in cues)
 
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from app import cli
-from engine.formats import read_take
+from engine.formats import read_take, write_take
 from engine.performance import demo
+from engine.take import Take
 
 TAKE = str(demo.BUNDLED)
 
@@ -78,3 +79,16 @@ def test_mistakes_are_one_sentence(tmp_path: Path, arguments: list[str], says: s
     assert cli.run(["fill", TAKE, *arguments, "-o", str(out)]) == 2
     said = capsys.readouterr().err
     assert says in said and said.count("\n") == 1 and not out.exists()
+
+
+def test_a_guide_of_another_rate_and_an_unknown_viseme_are_refused(tmp_path: Path, capsys) -> None:
+    source, out = read_take(demo.BUNDLED), tmp_path / "out.csv"
+    write_take(Take(source.weights, 60.0), tmp_path / "fast.csv")
+    (tmp_path / "cues.tsv").write_text("1.0\tQ\n2.0\tX\n")
+    for steer, says in (
+        (["--guide", str(tmp_path / "fast.csv")], "60 frames per second"),
+        (["--visemes", str(tmp_path / "cues.tsv")], "'Q'"),
+    ):
+        assert cli.run(["fill", TAKE, "--frames", "40:60", *steer, "-o", str(out)]) == 2
+        said = capsys.readouterr().err
+        assert says in said and said.count("\n") == 1 and not out.exists()

@@ -163,7 +163,7 @@ def test_other_files_are_a_sentence_and_stay_as_they_are(tmp_path: Path, content
     assert path.read_bytes() == content
     with pytest.raises(FormatError, match="not there"):
         Project.open(tmp_path / "nowhere.retake")
-    with pytest.raises(FormatError, match="not there"):
+    with pytest.raises(FormatError, match="is a folder"):
         Project.open(tmp_path)
 
 

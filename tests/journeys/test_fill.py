@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
+import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from app.commands import MarkCommand
 from app.main_window import MainWindow
 from app.spans.filling import VARIANTS
 from app.timeline.panel import RULER_PX
-from engine.project import Span
+from engine.project import Pin, Span
+from engine.take import SHAPES, Take
 
 LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
 
@@ -69,6 +75,66 @@ def test_dropping_a_fill_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWin
 
 
 def test_a_fill_without_a_span_says_what_to_do(qtbot: QtBot, window: MainWindow) -> None:
+    window.session.set_marks(replace(window.session.marks, spans=()))
     QTest.keyClick(window, Qt.Key.Key_F)
     assert window.notices.isVisible() and "span" in window.notices.text.text()
     assert Span(1, 2) not in window.session.marks.spans
+
+
+def refusal(qtbot: QtBot, window: MainWindow, frames: tuple[int, int]) -> str:
+    """Ask for a fill of some frames that cannot be; return what the window says, having changed nothing."""
+    session = window.session
+    before, steps = session.take, session.undo.count()
+    session.select(frames)
+    QTest.keyClick(window, Qt.Key.Key_F)
+    qtbot.waitUntil(lambda: window.notices.isVisible() and not window.filling.busy, timeout=60_000)
+    assert session.take is before and session.draft is None and session.undo.count() == steps
+    return window.notices.text.text()
+
+
+def test_a_span_of_one_frame_or_of_everything_is_refused(qtbot: QtBot, window: MainWindow) -> None:
+    assert "one frame" in refusal(qtbot, window, (50, 51))
+    assert "whole take" in refusal(qtbot, window, (0, len(window.session.take)))
+
+
+@pytest.mark.parametrize(
+    ("frames", "fps", "says"), [(40, 30.0, "does not cover the span"), (400, 60.0, "60 frames per second")]
+)
+def test_a_guide_of_another_length_or_rate_is_refused(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, frames: int, fps: float, says: str
+) -> None:
+    from engine.formats import write_take
+
+    write_take(Take(np.zeros((frames, 52)), fps), tmp_path / "guide.csv")
+    (lost,) = window.session.marks.spans
+    window.session.select((lost.start, lost.stop))
+    window.spans.guide_by(tmp_path / "guide.csv")
+    assert window.spans.guide_shift.isVisibleTo(window.spans)
+    assert says in refusal(qtbot, window, (100, 140))
+
+
+def test_overlapping_marks_are_refused(window: MainWindow) -> None:
+    session = window.session
+    for frames in ((100, 130), (120, 150)):
+        session.select(frames)
+        window.spans.mark()
+    assert [(span.start, span.stop) for span in session.marks.spans if span.kind == "user"] == [(100, 130)]
+    assert "100:130" in window.notices.text.text()
+
+
+def test_pins_inside_are_met_pins_outside_are_left_alone_and_others_keep_the_steering(
+    qtbot: QtBot, window: MainWindow
+) -> None:
+    session = window.session
+    pins = (Pin(30, {"jawOpen": 0.9}, 20, 40), Pin(120, {"jawOpen": 0.7}, 110, 130))
+    session.undo.push(MarkCommand(session, replace(session.marks, pins=pins), "pins"))
+    session.select((100, 150))
+    QTest.keyClick(window, Qt.Key.Key_F)
+    for seed in (0, VARIANTS):
+        qtbot.waitUntil(lambda: bool(window.filling.variants) and not window.filling.busy, timeout=60_000)
+        assert f"seed {seed}" in window.spans.seed.text()
+        for variant in window.filling.variants:
+            assert variant.weights[20, list(SHAPES).index("jawOpen")] == pytest.approx(0.7, abs=1e-6)
+        QTest.mouseClick(window.spans.again_button, LEFT)
+    window.filling.drop()
+    np.testing.assert_array_equal(session.take.weights, session.original.weights)

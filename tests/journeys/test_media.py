@@ -196,6 +196,7 @@ def test_a_file_that_was_cut_short_can_be_used_all_the_same_or_detached(
     QTest.mouseClick(buttons[0], LEFT)
     qtbot.waitUntil(lambda: session.audio is not None, timeout=10_000)
     assert 3.9 < session.audio.duration_s < 4.1 and list(window.media.missing) == ["video"]
+    qtbot.waitUntil(lambda: any(each.isVisible() for each in window.missing.findChildren(QPushButton)))  # laid anew
     QTest.mouseClick(button(window, "Use it all the same"), LEFT)
     told = window.notices.text
     qtbot.waitUntil(lambda: told.text().startswith("a.mp4 could not be read"), timeout=10_000)  # half a film is none

@@ -53,7 +53,7 @@ def test_an_edit_remembers_how_it_was_made_and_is_made_again_otherwise(qtbot: Qt
     assert edit.inputs == {"exact": False, "follow": True}
     believable, title = session.take.weights.copy(), session.undo.undoText()
     assert window.facts.again_button.isHidden()
-    assert "mm of" in window.facts.told.text() and "bit-identical" in window.facts.facts.text()
+    assert "mm of" in window.facts.told.text() and "bit for bit" in window.facts.facts.text()
 
     QTest.keyClick(window, Qt.Key.Key_E, SHIFT)
     assert not window.facts.again_button.isHidden()

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QComboBox, QMessageBox
+from PySide6.QtWidgets import QApplication, QComboBox
 from pytestqt.qtbot import QtBot
 
 from app import theme
 from app.main_window import MainWindow
+from app.page import Page
 from app.playback import device
 from app.playback.clock import AudioClock
 from app.settings import Settings, log_path
@@ -104,6 +105,6 @@ def test_a_settings_file_with_nonsense_is_as_good_as_none(tmp_path: Path) -> Non
 
 def test_about_says_the_versions_and_where_the_log_is(qtbot: QtBot, window: MainWindow) -> None:
     window.actions_by_name["about"].trigger()
-    (box,) = [each for each in QApplication.topLevelWidgets() if isinstance(each, QMessageBox) and each.isVisible()]
-    assert str(log_path()) in box.text() and "PySide6" in box.text() and not box.isModal()
+    (box,) = [each for each in QApplication.topLevelWidgets() if isinstance(each, Page) and each.isVisible()]
+    assert str(log_path()) in box.text.text() and "PySide6" in box.text.text() and not box.isModal()
     box.close()

@@ -13,11 +13,13 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import mse_loss
 
+from engine.controls import bundled_measurer
 from engine.evaluate.baselines.parts import Areas, Material, Report, fit, restore
+from engine.models.distances import Distances
 from engine.regress.areas import Area
-from engine.regress.losses import Distances
 from engine.regress.network import ALIGNMENT
 from engine.regress.requests import salt_and_pepper
+from engine.take import SHAPES
 
 WIDTHS = (32, 64, 128)
 ALPHA, BETA, NOISE = 1.0, 1.0, 0.2
@@ -78,7 +80,7 @@ def _train_area(material: Material) -> tuple[BSBS19, float]:
     network.mean.copy_(controls.mean(dim=(0, 2))[None, :, None])
     low, high = (bound.reshape(1, -1, 1) for bound in (controls.amin(dim=(0, 2)), controls.amax(dim=(0, 2))))
     noise = torch.Generator().manual_seed(material.source.seed)
-    distances, columns = Distances(), torch.tensor(material.area.shape_columns)
+    distances, columns = Distances(bundled_measurer()), torch.tensor(material.area.shape_columns)
     seen_columns = torch.tensor(material.area.control_columns)
 
     def regressed(controls: Tensor, weights: Tensor) -> Tensor:
@@ -87,8 +89,8 @@ def _train_area(material: Material) -> tuple[BSBS19, float]:
 
     def cleaned(controls: Tensor, weights: Tensor) -> Tensor:
         made = network(salt_and_pepper(controls, low, high, NOISE, noise))
-        whole = torch.zeros(len(made), distances.basis.shape[0], made.shape[2])
-        error = [distances(whole.index_copy(1, columns, part))[:, seen_columns] for part in (made, weights)]
+        whole = torch.zeros(len(made), len(SHAPES), made.shape[2])
+        error = [distances(whole.index_copy(1, columns, part).mT)[..., seen_columns] for part in (made, weights)]
         distance = mse_loss(error[0] / MM_PER_UNIT, error[1] / MM_PER_UNIT)
         return mse_loss(made, weights) + ALPHA * distance + BETA * _size(network.autoencoder)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from engine.errors import FormatError
 from engine.formats.characters.raw import RawCharacter
+from engine.formats.content import require_file
 
 KNOWN = "Retake imports glTF and GLB, folders of OBJ files, and ICT-FaceKit."
 
@@ -14,10 +16,11 @@ def read(path: Path) -> RawCharacter:
     """Read a character's mesh and shapes from any supported file or folder; raises `FormatError`."""
     from engine.formats.characters import gltf, ict, obj
 
-    if not path.exists():
-        raise FormatError(f"{path.name} is not there.", KNOWN)
-    if path.is_dir():
+    if os.path.isdir(path):  # which raises for no name, as pathlib does
         return obj.read(path)
+    if not os.path.exists(path):
+        raise FormatError(f"{path.name[:80]} is not there.", KNOWN)
+    require_file(path)
     ending = path.suffix.lower()
     if ending in (".gltf", ".glb"):
         return gltf.read(path)

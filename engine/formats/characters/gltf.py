@@ -17,6 +17,7 @@ import pygltflib
 from engine.errors import FormatError
 from engine.formats.characters.accessors import Accessors
 from engine.formats.characters.raw import MAX_SHAPES, MAX_VERTICES, RawCharacter, check
+from engine.formats.content import content_of
 from engine.take import Array
 
 MAX_BYTES = 1 << 30
@@ -65,12 +66,7 @@ def _structure(document: dict[str, Any]) -> pygltflib.GLTF2:
 
 def _document(path: Path) -> tuple[dict[str, Any], bytes]:
     """Return the JSON part and the binary chunk, which may be empty."""
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise FormatError(f"{path.name} is larger than {MAX_BYTES >> 20} MB.")
-        content = path.read_bytes()
-    except OSError as error:
-        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+    content = content_of(path, at_most=MAX_BYTES)
     chunks = {JSON_CHUNK: content, BINARY_CHUNK: b""}
     if content[:4] == struct.pack("<I", MAGIC):
         chunks |= dict(_chunks(content, path))

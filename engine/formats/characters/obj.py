@@ -10,6 +10,7 @@ import numpy.typing as npt
 from engine.errors import FormatError
 from engine.formats.characters.names import match_names, plain
 from engine.formats.characters.raw import MAX_SHAPES, MAX_VERTICES, RawCharacter, check
+from engine.formats.content import content_of, unread
 from engine.take import Array
 
 MAX_BYTES = 512 << 20
@@ -18,7 +19,10 @@ NEUTRAL_WORDS = ("neutral", "basis", "base", "rest")
 
 def read(folder: Path) -> RawCharacter:
     """Read every OBJ file of a folder as one character; raises `FormatError` that names the file at fault."""
-    paths = sorted(path for path in folder.iterdir() if path.suffix.lower() == ".obj" and path.is_file())
+    try:
+        paths = sorted(path for path in folder.iterdir() if path.suffix.lower() == ".obj" and path.is_file())
+    except OSError as error:
+        raise unread(folder, error) from error
     if not paths:
         raise FormatError(f"{folder.name} holds no OBJ file.", "Choose the folder with one OBJ file for each shape.")
     if len(paths) > MAX_SHAPES:
@@ -55,12 +59,7 @@ def _neutral(paths: list[Path], folder: Path) -> Path:
 
 def read_obj(path: Path, *, with_faces: bool = True) -> tuple[Array, npt.NDArray[np.int32]]:
     """Return vertices (n, 3) and triangles (t, 3); larger polygons become fans. Raises `FormatError` with the line."""
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise FormatError(f"{path.name} is larger than {MAX_BYTES >> 20} MB.")
-        lines = path.read_bytes().split(b"\n")
-    except OSError as error:
-        raise FormatError(f"{path.name} could not be read: {(error.strerror or 'unknown reason').lower()}.") from error
+    lines = content_of(path, at_most=MAX_BYTES).split(b"\n")
     places = [number for number, line in enumerate(lines) if line[:2] in (b"v ", b"v\t")]
     if not places:
         raise FormatError(f"{path.name} holds no vertices.", "Is it an OBJ file?")

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+import os
 from pathlib import Path
 
 from engine.character import Character, load
 from engine.errors import AssetError
-from engine.formats.characters import read
+from engine.formats.characters import ict, read
 from engine.formats.characters.assemble import assemble
 
 
 def character_of(path: Path) -> Character:
     """Return the head in a file of ours or of another program; raises `EngineError` with one plain sentence."""
     if path.suffix.lower() == ".npz":
-        with suppress(AssetError):  # another program's archive is tried next
+        try:
             return load(path)
+        except AssetError:  # another program's archive is tried next
+            if os.path.isfile(path) and not ict.is_ict(path):
+                raise
     return assemble(read(path)).character

@@ -12,6 +12,7 @@ from engine.take import Array
 
 MAX_VERTICES = 2_000_000
 MAX_SHAPES = 512
+FARTHEST = 1e9  # a head of 250 mm in nanometres is not as large
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +45,8 @@ def check(raw: RawCharacter) -> RawCharacter:
         raise FormatError(f"{raw.name} has a vertex that is not at a finite place: number {bad}.")
     if raw.triangles.min() < 0 or raw.triangles.max() >= count:
         raise FormatError(f"{raw.name} has a face that names vertex {raw.triangles.max()}; it has {count} vertices.")
+    if np.abs(raw.vertices).max() > FARTHEST:
+        raise FormatError(f"{raw.name} has a vertex further away than a head can be, in any unit.")
     if np.ptp(raw.vertices, axis=0).max() <= 0:
         raise FormatError(f"{raw.name} has all its vertices at one place.")
     for name, delta in raw.shapes.items():
@@ -51,6 +54,6 @@ def check(raw: RawCharacter) -> RawCharacter:
             raise FormatError(
                 f"{raw.name} has {len(delta)} vertices in its shape {name!r}, {count} in its neutral face."
             )
-        if not np.isfinite(delta).all():
+        if not (np.abs(delta) <= FARTHEST).all():
             raise FormatError(f"{raw.name} has a value that is not a finite number in its shape {name!r}.")
     return raw

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,8 @@ import pytest
 
 from engine.corpus import Piece
 from engine.errors import FormatError
-from engine.evaluate.blind import exhibits, key_of, score
+from engine.evaluate.blind import _fresh, exhibits, key_of, score
+from engine.evaluate.inpaint import Hole, holes
 from engine.performance import demo
 from engine.performance.performer import perform
 
@@ -24,6 +26,16 @@ def test_a_sheet_is_half_filled_and_filled_stretches_differ_only_inside() -> Non
         truth = piece.weights[starts[0] : starts[0] + len(one.take)]
         changed = np.flatnonzero((truth != one.take.weights).any(axis=1))
         assert bool(len(changed)) == (one.answer == "filled")
+
+
+def test_no_moment_is_shown_twice_while_there_are_others() -> None:
+    piece = Piece(np.asarray(perform(demo.SCRIPT).weights), True, "demo")
+    rng = np.random.default_rng(0)
+    found, seen = holes([piece], 30, 200), list[Hole]()
+    for _ in range(3):
+        seen.append(_fresh(found, seen, rng))
+    starts = sorted(hole.start for hole in seen)
+    assert all(later - earlier >= 30 for earlier, later in pairwise(starts))
 
 
 def written(folder: Path, answers: dict[str, str]) -> tuple[Path, Path]:

@@ -21,14 +21,14 @@ def piece() -> Piece:
 
 
 def test_the_truth_makes_no_error(piece: Piece) -> None:
-    figures = regress.figures_of(lambda controls: piece.weights, [piece])
+    figures = regress.figures_of(lambda controls, kept: piece.weights, [piece])
     assert {figures[f"mse_{area.name}"] for area in AREAS} == {0.0}
     assert figures["closure_tpr_mouth"] == figures["closure_tpr_eyes"] == 1.0
     assert figures["closure_fpr_mouth"] == figures["closure_fpr_eyes"] == 0.0
 
 
 def test_gaze_is_that_of_the_take_and_weights_are_in_range(piece: Piece) -> None:
-    made = regress.played(lambda controls: np.full((len(controls), len(SHAPES)), 7.0), piece)
+    made = regress.played(lambda controls, kept: np.full((len(controls), len(SHAPES)), 7.0), piece)
     spoken = np.concatenate([area.shape_columns for area in AREAS])
     others = np.setdiff1d(np.arange(len(SHAPES)), spoken)
     np.testing.assert_array_equal(made[:, others], piece.weights[:, others])
@@ -37,7 +37,7 @@ def test_gaze_is_that_of_the_take_and_weights_are_in_range(piece: Piece) -> None
 
 def test_a_take_of_the_mouth_alone_is_measured_on_the_mouth_alone(piece: Piece) -> None:
     mouth = Piece(piece.weights, False, "someone")
-    figures = regress.figures_of(lambda controls: np.zeros((len(controls), len(SHAPES))), [mouth])
+    figures = regress.figures_of(lambda controls, kept: np.zeros((len(controls), len(SHAPES))), [mouth])
     assert figures["mse_lower"] > 0
     assert figures["mse_upper"] is figures["mse_eyelids"] is figures["closure_tpr_eyes"] is None
 

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from engine.corpus import Piece
 from engine.inpaint import train as training
 from engine.inpaint.gap import FEATURES, gap_of, ground, statistics_of
 from engine.inpaint.infer import load, save_filler
+from engine.inpaint.losses import Batch, Shares, fill_losses, scatter
 from engine.inpaint.material import (
     Help,
     Performance,
@@ -18,10 +20,13 @@ from engine.inpaint.material import (
     random_gap,
     random_hole,
     roughened,
+    said_in,
     synthetic,
     window,
 )
-from engine.inpaint.train import Settings, Trainer, fill_losses, make_batch
+from engine.inpaint.network import MEMORY_FRAMES, noise_curves
+from engine.inpaint.train import Settings, Trainer, make_batch
+from engine.speech.visemes import NAMES, Cue
 from engine.take import SHAPES
 
 SMALL = Settings(frames=64, hidden=16, batch=4, shared_steps=2, parted_steps=2, help=Help(synthetic_minutes=0.3))
@@ -95,12 +100,53 @@ def test_the_ground_keeps_what_is_known_and_features_are_finite(material: list[P
 def test_losses_equal_a_plain_sum_over_the_hole(material: list[Performance]) -> None:
     statistics = statistics_of(material[0].weights)
     batch = make_batch(material, statistics, SMALL, np.random.default_rng(0), 2)
-    plain = Settings(far_share=1.0, value_share=1.0)
-    values = fill_losses(batch.base, batch, training.six_distances(), plain)["values"]
+    terms = fill_losses(batch.base, batch, training.six_distances(), Shares(far=1.0, values=1.0, squares=1.0))
     for index in range(2):
-        hole = batch.hole[index].bool()
-        expected = (batch.base[index] - batch.truth[index]).abs()[hole].mean()
-        torch.testing.assert_close(values[index], expected)
+        off = (batch.base[index] - batch.truth[index])[batch.hole[index].bool()]
+        torch.testing.assert_close(terms["values"][index], off.abs().mean())
+        torch.testing.assert_close(terms["squares"][index], off.square().mean())
+
+
+def test_scatter_is_least_for_fills_drawn_as_the_truth_is() -> None:
+    """Truths are drawn at random; neither the one best guess nor too wide a scatter may score as well as such draws."""
+    draws, shape = 400, (1, 64, 2)
+    torch.manual_seed(0)
+    whole = torch.ones(shape)
+    scores = {spread: 0.0 for spread in (0.0, 0.5, 1.0, 1.5, 2.0)}
+    for _ in range(draws):
+        truth, one, other = (torch.randn(1, 1, 2).expand(shape) for _ in range(3))
+        batch = Batch(truth, whole, whole, whole, whole, torch.zeros(1, 64, 1))
+        for spread in scores:
+            scores[spread] += float(scatter(spread * one, spread * other, batch)) / draws
+    assert min(scores, key=lambda spread: scores[spread]) == 1.0
+
+
+def test_scatter_asks_nothing_where_the_pose_is_settled(material: list[Performance]) -> None:
+    batch = make_batch(material, statistics_of(material[0].weights), SMALL, np.random.default_rng(0), 2)
+    settled = replace(batch, certainty=torch.ones_like(batch.certainty))
+    assert not scatter(settled.base, settled.base + 0.1, settled).any()
+
+
+def test_noise_has_unit_variance_and_each_curve_its_own_memory() -> None:
+    noise = noise_curves(200_000, np.random.default_rng(0))
+    np.testing.assert_allclose(noise.std(axis=0), 1.0, atol=0.05)
+    for curve, memory in zip(noise.T, MEMORY_FRAMES, strict=True):
+        lag = max(1, round(memory))
+        expected = np.exp(-lag / memory) if memory else 0.0
+        assert np.corrcoef(curve[:-lag], curve[lag:])[0, 1] == pytest.approx(expected, abs=0.05)
+
+
+def test_sound_is_matched_to_the_piece_that_was_cut_from_its_take() -> None:
+    cues = [Cue(0.0, 1.0, "SIL"), Cue(1.0, 2.0, "M"), Cue(2.0, 3.0, "AA")]
+    piece = Piece(np.zeros((60, len(SHAPES))), False, "mouth", first=45)
+    classes = said_in(piece, cues)
+    assert [NAMES[classes[frame]] for frame in (0, 14, 15, 44)] == ["mbp", "mbp", "aa", "aa"] and classes[50] == -1
+    with_sound, without = (
+        performances([piece, Piece(np.zeros((60, len(SHAPES))), True, "face")], Help(synthetic_minutes=0), rng, heard)
+        for rng, heard in ((np.random.default_rng(0), {"mouth": cues}), (np.random.default_rng(0), None))
+    )
+    assert len(with_sound) == len(without) + Help().heard_copies
+    np.testing.assert_array_equal(with_sound[-1].visemes, classes)
 
 
 @pytest.mark.parametrize("adversary", [True, False])

@@ -8,15 +8,9 @@ from engine.performance.augment import Levers
 from engine.performance.corpus import synthetic_performances
 from engine.regress.areas import AREAS
 from engine.regress.data import NearestFaces, Source, cut
-from engine.regress.losses import Distances, distance_error
+from engine.regress.losses import distance_error
+from engine.regress.network import BEYOND, AreaNetwork, UNetConfig
 from engine.regress.requests import contradictory, exaggerated, salt_and_pepper
-from engine.take import SHAPES
-
-
-def test_distances_equal_the_measurer() -> None:
-    weights = np.random.default_rng(0).random((20, len(SHAPES)))
-    made = Distances()(torch.tensor(weights.T[None]).float())[0].numpy().T
-    np.testing.assert_allclose(made, measure(weights), atol=2e-3)
 
 
 def test_a_closure_invented_weighs_like_one_missed() -> None:
@@ -47,6 +41,49 @@ def test_a_face_that_exists_is_its_own_nearest() -> None:
     assert (found - windows.weights[:, shapes]).square().mean() < 2e-3
     beyond = nearest.weights(windows.controls[:, columns] * 10)
     assert beyond.min() >= 0 and beyond.max() <= windows.weights.max()
+
+
+def _tempered(controls: torch.Tensor) -> AreaNetwork:
+    network = AreaNetwork(UNetConfig(3, 2, (4, 4, 4)), UNetConfig(2, 2, (4, 4, 4)))
+    network.learn_bounds(controls)
+    return network
+
+
+def test_what_was_recorded_is_tempered_hardly_ever() -> None:
+    torch.manual_seed(0)
+    controls = torch.randn(20, 3, 256).cumsum(dim=2) * 0.1
+    network = _tempered(controls)
+    made, scale = network.tempered(controls)
+    whole = (scale == 1).float().mean()
+    assert 0.5 < whole < 1 - BEYOND and scale.mean() > 0.97
+    kept = (scale == 1).expand_as(made)
+    torch.testing.assert_close(made[kept], controls[kept])
+
+
+def test_exaggerated_motion_is_scaled_as_a_whole_to_what_was_recorded() -> None:
+    time = torch.arange(128) / 10
+    controls = torch.stack([time.sin(), time.cos(), (1.3 * time).sin()])[None] + 5.0
+    network = _tempered(controls)
+    asked = 5.0 + 8 * (controls - 5.0)
+    made, _ = network.tempered(asked)
+    inner = slice(20, -20)
+    away = [(one - network.centre)[..., inner] for one in (made, controls, asked)]
+    assert away[1].abs().max() < away[0].abs().max() < 0.5 * away[2].abs().max()
+    ratio = away[0] / away[2]
+    torch.testing.assert_close(ratio, ratio[:, :1].expand_as(ratio), atol=1e-4, rtol=1e-3)
+
+
+def test_pepper_is_scaled_alone() -> None:
+    time = torch.arange(128) / 10
+    controls = torch.stack([time.sin(), time.cos(), (1.3 * time).sin()])[None]
+    network = _tempered(controls)
+    quiet = 0.5 * controls
+    asked = quiet.clone()
+    asked[..., 60] = 100.0
+    made, _ = network.tempered(asked)
+    assert (made[..., 60] - network.centre[..., 0]).abs().max() < 3.0
+    torch.testing.assert_close(made[..., :50], quiet[..., :50])
+    torch.testing.assert_close(made[..., 70:], quiet[..., 70:])
 
 
 def test_salt_and_pepper_throws_the_share_it_is_asked_to() -> None:

@@ -8,10 +8,11 @@ import pytest
 import torch
 from safetensors.torch import load_file
 
+from engine.corpus import split
 from engine.performance import demo
 from engine.performance.augment import Levers
 from engine.regress.areas import AREAS, EXTENDED_AREAS
-from engine.regress.train import Recipe, Settings, train
+from engine.regress.train import Recipe, Settings, train, train_area
 
 ALL = (*AREAS, *EXTENDED_AREAS)
 
@@ -65,3 +66,15 @@ def test_other_settings_begin_anew(recordings: Path, tmp_path: Path) -> None:
         train(recordings, tmp_path, TINY, report=stop)
     train(recordings, tmp_path, replace(TINY, seed=1), report=lines.append)
     assert not any("going on" in line for line in lines)
+
+
+def test_the_same_seed_gives_the_same_figures_and_another_does_not(recordings: Path, tmp_path: Path) -> None:
+    training, validation, _ = split(recordings)
+
+    def figures(seed: int, name: str) -> dict[str, float]:
+        settings = replace(TINY, seed=seed)
+        return train_area(AREAS[2], training, validation, settings, path=tmp_path / name, report=lambda _: None)[1]
+
+    once, again, other = figures(0, "once"), figures(0, "again"), figures(1, "other")
+    assert once == pytest.approx(again, abs=1e-4)
+    assert once != pytest.approx(other, abs=1e-4)
