@@ -43,6 +43,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.ci.layout.setHorizontalSpacing(0)
         self._colours = colours
         self.lanes: list[Lane] = []
+        self._made: dict[int, Lane] = {}  # by key; a lane that leaves the scene is kept: Qt may yet paint it once
         self._underlay = Underlay(self._lanes_box, self._x_of)
         self._playhead = Playhead(self._lanes_box, self._x_of)
         self.scene().addItem(self._underlay)
@@ -123,8 +124,10 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         if [lane.key for lane in self.lanes] == wanted:
             return
         self.ci.clear()
-        known = {lane.key: lane for lane in self.lanes}
-        self.lanes = [known.get(key) or Lane(key) for key in wanted]
+        for key in wanted:
+            if key not in self._made:
+                self._made[key] = Lane(key)
+        self.lanes = [self._made[key] for key in wanted]
         for row, lane in enumerate(self.lanes):
             lane.paint_with(self._colours)
             self.ci.addItem(lane.gutter, row, 0)
