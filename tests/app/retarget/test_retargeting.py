@@ -15,6 +15,7 @@ from app.retarget.carry import Carried
 from app.retarget.sides import sides
 from app.retarget.strengths import STEPS, position, strength_at
 from engine.character import Character, bundled
+from engine.controls import bundled_measurer
 from engine.formats.markers import Markers, write
 from engine.project import replay
 from engine.spacetime.layout import standard
@@ -111,7 +112,8 @@ def test_a_project_that_is_opened_again_shows_the_head_it_was_kept_on(
     assert session.character is None
     state = replay(contents)
     aimed.retargeting._heads = {"": None}  # as in a program that was just started
-    session.restore(contents, None, restored(session, contents, state), state)
+    measured = tuple(bundled_measurer().measure(take.weights) for take in (contents.original, state.take))
+    session.restore(contents, None, restored(session, contents, state), state, measured)
     qtbot.waitUntil(lambda: session.character is not None, timeout=20_000)
     assert session.character.name == "broad"
     session.undo.undo()

@@ -141,7 +141,7 @@ BAD = {
     "pin outside": (dict(pins={10: {"jawOpen": 0.2}}), "frame 10 lies outside"),
     "pin shape": (dict(pins={70: {"jaw": 0.2}}), "no shape called 'jaw'"),
     "pin range": (dict(pins={70: {"jawOpen": 7.0}}), "outside 0..1"),
-    "pin nan": (dict(pins={70: {"jawOpen": np.nan}}), "not a finite number"),
+    "pin nan": (dict(pins={70: {"jawOpen": np.nan}}), "not a number that a face could take"),
     "pin length": (dict(pins={70: np.zeros(51)}), "needs 52 finite weights"),
     "pin region": (dict(region="eyes", pins={70: {"jawOpen": 0.2}}), "moves nothing in the region"),
     "viseme": (dict(visemes=[Cue(2, 3, "Q7")]), "no viseme or phone called 'Q7'"),

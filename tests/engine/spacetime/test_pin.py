@@ -122,7 +122,7 @@ def test_a_take_of_one_frame_can_be_pinned() -> None:
         ({68: SMILE}, (63, 10**6), "not within the take"),
         ({}, (63, 75), "no pin"),
         ({68: {"grin": 1.0}}, (63, 75), "'grin'"),
-        ({68: {"jawOpen": float("nan")}}, (63, 75), "finite"),
+        ({68: {"jawOpen": float("nan")}}, (63, 75), "not a number that a face could take"),
         ({68: np.zeros(3)}, (63, 75), "52 finite"),
     ],
 )
