@@ -32,6 +32,7 @@ RIGHT_SHAPES, LEFT_SHAPES = (
 )
 _SIDEWAYS = [CONTROL_INDEX[name] for name in ("lips_horizontal", "corner_right", "corner_left")]
 _UPRIGHT = [CONTROL_INDEX[name] for name in ("lips_vertical", "nose_to_lip", "chin_to_lip")]
+_LIDS = [CONTROL_INDEX[name] for name in ("eyelid_right", "eyelid_left")]
 FEATHER_S = 0.5  # how far beyond the changed frames a face may still move, easing into the original
 FOLLOW = True  # on validation takes edits miss 0.88 mm so, 1.54 mm without; 1.05 times as far from recorded motion
 FOLLOW_ROUNDS = 6  # of landing; the guess need not be exact
@@ -136,6 +137,7 @@ class Dragger:
         self._held: Mask = np.zeros(self.controls.shape, bool) if asked is None else ~np.isnan(asked)
         self._regressor = regressor or infer.bundled()
         self._known: dict[str, Array] = {}
+        self._answers = infer.Answers()
         self._known_frames: tuple[int, int] | None = None
 
     def drag(self, start: int, asked: Array, *, exact_curve: bool = False, follow: bool = FOLLOW) -> Patch:
@@ -199,7 +201,8 @@ class Dragger:
         """
         moved = edited - original
         if np.abs(moved[:, RIGHT_CONTROLS] - moved[:, LEFT_CONTROLS]).max() <= ALIKE_MM:
-            return self._made(edited, frames, low) - self._once("", original, frames, low)
+            before = self._once("", original, frames, low)
+            return self._made(edited, frames, low) - before
         changes = []
         for side, columns in (("right", RIGHT_CONTROLS), ("left", LEFT_CONTROLS)):
             before, after = _alike(original, columns), _alike(edited, columns)
@@ -208,15 +211,16 @@ class Dragger:
         right, left = changes
         return np.where(RIGHT_SHAPES, right, np.where(LEFT_SHAPES, left, (np.asarray(right) + left) / 2))
 
-    def _made(self, curves: Array, frames: tuple[int, int], low: int) -> Array:
-        return self._regressor.infer_range(curves, frames[0] - low, frames[1] - low)
+    def _made(self, curves: Array, frames: tuple[int, int], low: int, *, remember: bool = False) -> Array:
+        answers = self._answers
+        return self._regressor.infer_range(curves, frames[0] - low, frames[1] - low, answers=answers, remember=remember)
 
     def _once(self, what: str, curves: Array, frames: tuple[int, int], low: int) -> Array:
         """Return N of curves that stay the same while the same window is dragged."""
         if self._known_frames != frames:
-            self._known, self._known_frames = {}, frames
+            self._known, self._known_frames, self._answers = {}, frames, infer.Answers()
         if what not in self._known:
-            self._known[what] = self._made(curves, frames, low)
+            self._known[what] = self._made(curves, frames, low, remember=True)
         return self._known[what]
 
 
@@ -255,7 +259,9 @@ def _followed(weights: Array, wanted: Array, held: Mask) -> Array:
     if not held[:, [*_SIDEWAYS, *_UPRIGHT]].any():
         return wanted  # one lid says nothing of the other
     guess = _land(weights, wanted, held.astype(float), free=GUESSED, rounds=FOLLOW_ROUNDS)
-    return np.where(held, wanted, bundled_measurer().measure(guess))
+    follows = ~held
+    follows[:, _LIDS] = False  # nor does the mouth say anything of the lids
+    return np.where(follows, bundled_measurer().measure(guess), wanted)
 
 
 def _land(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
@@ -14,6 +15,26 @@ from engine.regress import contacts
 from engine.regress.areas import AREAS, EXTENDED_AREAS, Area
 from engine.regress.network import ALIGNMENT, REACH, AreaNetwork, from_config
 from engine.take import SHAPES, Array
+
+
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """What the networks said of curves that are asked about again and again, each time with some of them changed.
+
+    Attributes
+    ----------
+    of : by area, the curves its network read, (frames, controls), its weights, (frames, shapes), and how far its
+        contacts are to be trusted, (frames, contacts)
+    """
+
+    of: dict[str, list[tuple[Array, Array, Array]]] = field(default_factory=dict)
+
+    def find(self, area: str, asked: Array) -> tuple[Array, Array] | None:
+        """Return what an area's network said of these very curves, or None where it was not asked."""
+        for known, weights, trust in self.of.get(area, []):
+            if np.array_equal(known, asked):
+                return weights, trust
+        return None
 
 
 class Regressor:
@@ -47,35 +68,50 @@ class Regressor:
         full: bool = True,
         land: bool = True,
         kept: Array | None = None,
+        answers: Answers | None = None,
+        remember: bool = False,
     ) -> Array:
-        """Return rows [start, stop) of `infer`, looking no further than the networks can feel."""
+        """Return rows [start, stop) of `infer`, looking no further than the networks can feel.
+
+        A network whose curves are among the `answers` does not run again; with `remember` the others join them.
+        """
         first = max(0, (start - REACH) // ALIGNMENT * ALIGNMENT)
         last = min(len(controls), -(-(stop + REACH) // ALIGNMENT) * ALIGNMENT)
         rows = slice(start - first, stop - first)
         weights = np.zeros((last - first, len(SHAPES))) if kept is None else np.array(kept[first:last])
-        trust = self._fill(weights, controls[first:last], full=full)
+        trust = self._fill(weights, controls[first:last], full=full, answers=answers, remember=remember)
         if not full:
             return weights[rows]
         made = np.clip(weights[rows], 0.0, 1.0)
         return contacts.met(made, controls[start:stop], trust[rows]) if land else made
 
-    def _fill(self, weights: Array, controls: Array, *, full: bool) -> Array:
-        """Put what the networks say into weights, (frames, 52); returns how far each contact is to be trusted, (frames, 3).
-
-        The last frame is held up to a multiple of the networks' pooling.
-        """
-        frames = len(controls)
-        held = np.pad(controls, ((0, -frames % ALIGNMENT), (0, 0)), mode="edge")
-        trust = np.zeros((frames, len(contacts.MEETING)))
-        with torch.inference_mode():
-            for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
-                network = self.networks[area.name]
-                asked = torch.from_numpy(held[:, area.control_columns].T.astype(np.float32))[None]
-                if full:
-                    asked, share = network.tempered(asked)
-                    trust[:, contacts.of_area(area.name)] = share[0].numpy().T[:frames]
-                weights[:, area.shape_columns] = network(asked, full=full)[0].numpy().T[:frames]
+    def _fill(self, weights: Array, controls: Array, *, full: bool, answers: Answers | None, remember: bool) -> Array:
+        """Put what the networks say into weights, (frames, 52); returns how far each contact is to be trusted, (frames, 3)."""
+        trust = np.zeros((len(controls), len(contacts.MEETING)))
+        for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
+            asked = controls[:, area.control_columns]
+            found = answers.find(area.name, asked) if answers is not None and full else None
+            said, trusted = found or self._ask(area.name, asked, full=full)
+            if answers is not None and remember and found is None:
+                answers.of.setdefault(area.name, []).append((asked, said, trusted))
+            weights[:, area.shape_columns] = said
+            trust[:, contacts.of_area(area.name)] = trusted
         return trust
+
+    def _ask(self, area: str, asked: Array, *, full: bool) -> tuple[Array, Array]:
+        """Return an area's weights, (frames, shapes), of its curves, (frames, controls), and the trust in its contacts.
+
+        The last frame is held up to a multiple of the network's pooling.
+        """
+        frames, network = len(asked), self.networks[area]
+        held = np.pad(asked, ((0, -frames % ALIGNMENT), (0, 0)), mode="edge")
+        with torch.inference_mode():
+            curves = torch.from_numpy(held.T.astype(np.float32))[None]
+            share = torch.zeros(1, 1, frames)
+            if full:
+                curves, share = network.tempered(curves)
+            said = network(curves, full=full)[0].numpy().T[:frames]
+        return said, share[0].numpy().T[:frames]
 
     def _areas(self, *, extended: bool) -> list[Area]:
         return [area for area in AREAS + EXTENDED_AREAS * extended if area.name in self.networks]

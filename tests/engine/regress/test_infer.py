@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import torch
 
+from engine.controls import CONTROL_INDEX
 from engine.regress.areas import AREAS, EXTENDED_AREAS
-from engine.regress.infer import Regressor
+from engine.regress.infer import Answers, Regressor
 from engine.regress.network import AreaNetwork, UNetConfig
 from engine.take import SHAPES
 
@@ -34,6 +35,26 @@ def test_a_range_equals_the_whole_take(regressor: Regressor, start: int, stop: i
     whole = regressor.infer(curves, full=full)[start:stop]
     np.testing.assert_allclose(regressor.infer_range(curves, start, stop, full=full), whole, atol=1e-5)
     assert np.ptp(whole) > 0.01
+
+
+def test_remembered_answers_stand_for_those_of_the_networks(
+    regressor: Regressor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    curves = np.random.default_rng(1).uniform(0, 50, (160, 8))
+    lips = curves.copy()
+    lips[60:80, CONTROL_INDEX["lips_vertical"]] += 2.0
+    answers = Answers()
+    first = regressor.infer_range(curves, 50, 90, answers=answers, remember=True)
+    np.testing.assert_array_equal(first, regressor.infer_range(curves, 50, 90))
+    expected = regressor.infer_range(lips, 50, 90)
+    asked = []
+    monkeypatch.setattr(
+        regressor,
+        "_ask",
+        lambda area, *rest, **how: asked.append(area) or Regressor._ask(regressor, area, *rest, **how),
+    )
+    np.testing.assert_array_equal(regressor.infer_range(lips, 50, 90, answers=answers), expected)
+    assert asked == ["lower"]  # nothing that the others read has changed
 
 
 def test_the_lids_leave_gaze_alone(regressor: Regressor) -> None:
