@@ -26,6 +26,7 @@ def measure() -> list[Speed]:
         state[0] = cleaner.step(weights[index], 1 / 60, state[0])
 
     data = [encode(Stamp(frame), frame_weights, subject="speed") for frame, frame_weights in enumerate(weights)]
+    text = ["|".join(f"{name}-{100 * row[at]:.0f}" for at, name in enumerate(SHAPES)).encode() for row in weights]
     stream = Stream()
 
     def packet(index: int) -> None:
@@ -34,5 +35,6 @@ def measure() -> list[Speed]:
     return [
         Speed("clean_frame_ms_p95", percentile_ms(step, FRAMES), "ms", 0.25),
         Speed("live_decode_us_p95", percentile_ms(lambda index: decode(data[index]), FRAMES) * 1e3, "us", 50.0),
+        Speed("live_decode_text_us_p95", percentile_ms(lambda index: decode(text[index]), FRAMES) * 1e3, "us", 50.0),
         Speed("live_packet_to_weights_ms_p95", percentile_ms(packet, FRAMES), "ms", 3.0),
     ]

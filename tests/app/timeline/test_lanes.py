@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 
 import numpy as np
@@ -199,26 +198,6 @@ def test_without_visemes_there_is_no_lane(timeline: Timeline) -> None:
     session.set_visemes(None)
     assert timeline.lane_box("visemes").isEmpty() and timeline.sizeHint().height() < height
     assert timeline.visemes.edge_at(300) is None and timeline.visemes.tell(300) == ""
-
-
-def test_an_hour_of_cues_is_drawn_as_fast_as_a_minute(timeline: Timeline) -> None:
-    """Best of several, so that a busy machine does not decide."""
-    session = Session(Take(weights=np.zeros((108_000, len(SHAPES))), fps=FPS))
-    rng = np.random.default_rng(0)
-    ends = np.cumsum(rng.uniform(0.05, 0.15, 36_000))
-    session.visemes = attached([Cue(b - 0.05, b, "MFTS"[i % 4]) for i, b in enumerate(ends.tolist())], "hour")
-    session.set_flags(tuple(Flag("spike", 20 * i, 20 * i + 1, (i % 10) / 10, "A spike.") for i in range(5_000)))
-    shown = Timeline(session, DARK, gutter_px=100)
-    shown.resize(900, 120)
-    session.set_view(0, 108_000)
-    shown.grab()
-    spent = []
-    for index in range(8):
-        session.set_view(index * 400, 60_000 + index * 400)
-        began = time.perf_counter()
-        shown.grab()
-        spent.append(time.perf_counter() - began)
-    assert min(spent) < 0.016
 
 
 FLAGS = (

@@ -123,10 +123,3 @@ def test_every_shape_of_the_text_is_read() -> None:
     plain = decode(b"|".join(f"{name}-{index}".encode() for index, name in enumerate(SHAPES)))
     assert isinstance(plain, Packet)
     np.testing.assert_array_equal(plain.weights, made.weights)
-
-
-@pytest.mark.parametrize("data", [GOOD, WHOLE_TEXT], ids=["Live Link Face", "iFacialMocap"])
-def test_a_packet_is_decoded_within_fifty_microseconds(benchmark, data: bytes) -> None:
-    benchmark(decode, data)
-    if benchmark.stats:
-        assert benchmark.stats.stats.median < 50e-6
