@@ -12,7 +12,7 @@ from engine.take import SHAPE_INDEX, SHAPES
 SUBJECT = "iFacialMocap"
 MAX_BYTES = 8192
 MAX_DEGREES = 3600.0
-_WEIGHT = re.compile(r"(?:\A|(?<=\|))(\w{1,40})[-&](-?\d{1,6})(?=\||\n?\Z)", re.ASCII)
+_WEIGHT = re.compile(r"\|(\w{1,40})[-&](-?\d{1,6})(?=\||\n?\Z)", re.ASCII)
 _ROTATION_COLUMNS = {"head": 0, "leftEye": 3, "rightEye": 6}
 # Sides are written `_L` and `_R`, or in full.
 _COLUMNS = SHAPE_INDEX | {
@@ -40,7 +40,7 @@ def decode(data: bytes) -> Packet | Drop:
     for entry in text.split("|") if "#" in text else ():
         if "#" in entry and not _read_rotation(entry.lstrip("="), rotations):
             return Drop.TEXT
-    found = {_COLUMNS[name]: int(percent) for name, percent in _WEIGHT.findall(text) if name in _COLUMNS}
+    found = {_COLUMNS[name]: int(percent) for name, percent in _WEIGHT.findall(f"|{text}") if name in _COLUMNS}
     if not found:
         return Drop.TEXT
     weights = np.zeros(len(SHAPES), np.float32)
