@@ -17,8 +17,8 @@ from engine.take import Array
 Indices = npt.NDArray[np.int64]
 FLAT = 1e-7  # a direction this much thinner than the widest is one that the patch does not have
 CENTRE_SHARE = 10.0  # weight of a patch's own vertex against all its neighbours together: ten heads of the second set
-COLUMNS = 16  # solved at a time: with one thread 20 % faster than four; more gain nothing
-PANEL = 8  # columns that are factorised at a time: patches have few entries, wider panels leave more of it to memory
+COLUMNS = 16  # solved at a time: with one BLAS thread, as the app sets, 20 % faster than four; more gain nothing
+PANEL = 8  # columns factorised at a time: 8 % faster than SuperLU's default at a mesh's few entries a column
 REACH = 2.0  # neighbours count by distance to the power of minus this
 NEAR = 0.05  # of a patch's mean distance: what is nearer counts no more, else a held pose would cut itself off
 COTANGENTS = (1e-3, 10.0)  # half of them, of a triangle's angles
@@ -125,7 +125,7 @@ def alignment(
 
 def _scattered(
     points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float, tell: Tell
-) -> Iterator[tuple[Indices, Indices, Array]]:
+) -> Iterator[tuple[npt.NDArray[np.integer], npt.NDArray[np.integer], Array]]:
     """Yield rows, columns and values of the patches' matrices, some patches of one size at a time."""
     sizes = np.diff(neighbourhoods.indptr)
     done = 0
