@@ -200,6 +200,8 @@ class _Carried:
     ) -> _Carried:
         """Choose the anchors of each part."""
         names = np.setdiff1d(parts, parts[solved])
+        if not len(names):
+            return _Carried(np.zeros((0, ANCHORS), np.int64), ())
         members = tuple(np.flatnonzero(parts == name) for name in names)
         strips = _open_share(triangles, parts) > OPEN_SHARE
         anchors = np.zeros((len(names), ANCHORS), np.int64)

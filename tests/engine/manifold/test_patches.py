@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.errors import EditError
-from engine.manifold.patches import LabelSolver, alignment, rings, similar, windows
+from engine.manifold.patches import COTANGENTS, LabelSolver, alignment, cotangent_laplacian, rings, similar, windows
 
 
 def grid(side: int = 7) -> tuple[np.ndarray, np.ndarray]:
@@ -45,6 +45,30 @@ def test_alignment_equals_the_least_squares_of_each_patch(dimension: int, stiffn
     made = alignment(vertices, neighbourhoods, dimension=dimension, stiffness=stiffness).toarray()
     plain = plain_alignment(vertices, neighbourhoods.toarray(), dimension, stiffness)
     np.testing.assert_allclose(made, plain, atol=1e-9)
+
+
+@pytest.mark.parametrize("squash", [(1.0, 1.0, 0.0), (1.0, 1e-5, 1e-5), (1.0, 0.0, 0.0)])
+def test_alignment_is_as_exact_where_patches_are_flat_or_a_line(squash: tuple[float, float, float]) -> None:
+    vertices, triangles = grid()
+    neighbourhoods = rings(triangles, vertices)
+    thin = vertices * squash
+    made = alignment(thin, neighbourhoods, dimension=2, stiffness=0.01).toarray()
+    np.testing.assert_allclose(made, plain_alignment(thin, neighbourhoods.toarray(), 2, 0.01), atol=1e-9)
+
+
+def test_the_laplacian_has_the_cotangents_of_the_angles_across_from_each_edge() -> None:
+    vertices, triangles = grid()
+    vertices = vertices * [1.0, 3.0, 1.0]  # some angles obtuse
+    plain = np.zeros(2 * (len(vertices),))
+    for triangle in triangles:
+        for a, b, c in (np.roll(triangle, turn) for turn in range(3)):
+            u, v = vertices[b] - vertices[a], vertices[c] - vertices[a]
+            angle = np.arccos(u @ v / np.linalg.norm(u) / np.linalg.norm(v))
+            weight = np.clip(0.5 / np.tan(angle), *COTANGENTS)
+            plain[b, c] -= weight
+            plain[c, b] -= weight
+    plain -= np.diag(plain.sum(axis=1))
+    np.testing.assert_allclose(cotangent_laplacian(vertices, triangles).toarray(), plain, atol=1e-9)
 
 
 def test_without_stiffness_every_affine_motion_is_free_and_with_it_only_a_shift() -> None:
