@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
 
 from engine.character import Character
 
@@ -36,6 +35,10 @@ class Lighting:
     """
 
     def __init__(self, character: Character) -> None:
+        from scipy import (
+            sparse,  # here and not above: it takes a third of a second, and the window should be seen first
+        )
+
         self._triangles = character.triangles
         faces, vertices = len(character.triangles), len(character.neutral)
         corners = (np.ones(3 * faces, np.float32), (character.triangles.ravel(), np.repeat(np.arange(faces), 3)))
