@@ -35,9 +35,8 @@ class Lighting:
     """
 
     def __init__(self, character: Character) -> None:
-        from scipy import (
-            sparse,  # here and not above: it takes a third of a second, and the window should be seen first
-        )
+        # here and not above: scipy takes a third of a second to load, and the window should be seen first
+        from scipy import sparse
 
         self._triangles = character.triangles
         faces, vertices = len(character.triangles), len(character.neutral)
