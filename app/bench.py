@@ -15,8 +15,7 @@ import numpy as np
 
 from app.bench_playback import opening_job, playback_job, saving_job
 from engine import speed
-from engine.speed import Speed, percentile_ms
-from engine.speed.drag import performance_of
+from engine.speed import Speed, percentile_ms, performance_of
 from engine.take import Take
 
 Report = Callable[[str], None]

@@ -15,8 +15,7 @@ import numpy as np
 from app.playback.clock import Pull
 from app.playback.device import LATENCY_S
 from app.preview.worker import Wanted
-from engine.speed import Speed
-from engine.speed.drag import performance_of
+from engine.speed import Speed, performance_of
 
 if TYPE_CHECKING:
     from PySide6.QtCore import QEventLoop

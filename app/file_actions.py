@@ -17,7 +17,6 @@ from app.session import Session
 from app.settings import Settings
 from engine.errors import EngineError
 from engine.formats import FORMATS, cues, write_take
-from engine.formats.characters.opening import character_of
 from engine.project import ENDING
 from engine.take import Take
 
@@ -161,6 +160,8 @@ class FileActions(QObject):
 
     def load_character(self) -> None:
         """Choose a head to show the take on; none goes back to the bundled one."""
+        from engine.formats.characters.opening import character_of
+
         kinds = "Heads (*.npz *.glb *.gltf *.obj)"
         name, _ = QFileDialog.getOpenFileName(self._window, "Show on another head", "", kinds)
         try:

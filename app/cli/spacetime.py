@@ -14,7 +14,7 @@ from engine.formats.content import require_file, unread
 
 if TYPE_CHECKING:
     from engine.character import Character
-    from engine.spacetime.retarget import Matching
+    from engine.spacetime.matching import Matching
     from engine.spacetime.source import Source
     from engine.take import Take
 
@@ -112,7 +112,7 @@ def retarget(
 
 
 def _matching(*, alpha: float | None, beta: float | None, closure: float | None, unbounded: bool) -> Matching:
-    from engine.spacetime.retarget import Matching
+    from engine.spacetime.matching import Matching
 
     usual = Matching()
     return Matching(

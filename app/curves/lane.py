@@ -97,6 +97,7 @@ class Lane:
         self.dot = pg.ScatterPlotItem(size=9)
         for item in (self.original, self.asked, self.reached, self.dot):
             self.view.addItem(item, ignoreBounds=True)
+        self.dot.hide()
         self.removed = Removed(self.view, LEAST_WEIGHT if self.curve.is_weight else LEAST_MM)
         self.range = self._fitted = (0.0, 1.0)
         self._curves: tuple[Thinned, Thinned, Thinned | None] | None = None  # original, reached, asked

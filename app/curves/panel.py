@@ -203,7 +203,9 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     def show_dot(self, lane: Lane | None, frame: float = 0.0, value: float = 0.0) -> None:
         """Show the handle on a lane's curve, or none."""
         for other in self.lanes:
-            other.dot.setData([frame], [value]) if other is lane else other.dot.clear()
+            other.dot.setVisible(other is lane)  # an empty one would be painted at every pan
+            if other is lane:
+                other.dot.setData([frame], [value])
 
     def show_handles(self, box: QRectF, handles: list[QPointF]) -> None:
         """Show a box with handles, in the scene; an empty box for none."""

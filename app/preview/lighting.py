@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
 
 from engine.character import Character
 
@@ -36,6 +35,9 @@ class Lighting:
     """
 
     def __init__(self, character: Character) -> None:
+        # here and not above: scipy takes a third of a second to load, and the window should be seen first
+        from scipy import sparse
+
         self._triangles = character.triangles
         faces, vertices = len(character.triangles), len(character.neutral)
         corners = (np.ones(3 * faces, np.float32), (character.triangles.ravel(), np.repeat(np.arange(faces), 3)))

@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from app.preview.camera import FIELD_OF_VIEW_DEG, Camera
 from app.preview.lighting import Lighting, to_linear
@@ -210,6 +208,9 @@ def _split(character: Character) -> tuple[Triangles, Triangles]:
     Leaving out what faces away saves a third of the time on software GL. A part that is wound inwards would vanish,
     and small parts such as brows and lashes are sheets that are seen from both sides: those are drawn whole.
     """
+    from scipy import sparse
+    from scipy.sparse.csgraph import connected_components
+
     triangles, vertices = character.triangles, character.neutral.astype(np.float64)
     ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]]])
     links = sparse.coo_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(vertices),) * 2)

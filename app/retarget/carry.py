@@ -6,16 +6,18 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from engine.character import Character, bundled
 from engine.errors import EditError
-from engine.formats.characters.opening import character_of
 from engine.spacetime.layout import Layout, named, standard
-from engine.spacetime.retarget import Matching, retarget
-from engine.spacetime.source import Source, bridge, from_take
+from engine.spacetime.matching import Matching
 from engine.take import SHAPE_INDEX, Array, Take
+
+if TYPE_CHECKING:
+    from engine.spacetime.source import Source
 
 Pose = Mapping[str, float]
 
@@ -105,6 +107,8 @@ class Carrier:
         if performance.capture is not None:
             return performance.capture
         if self._known is None or self._known[0] is not performance:
+            from engine.spacetime.source import from_take
+
             self._known = (performance, from_take(performance.take, performance.head))
         return self._known[1]
 
@@ -123,6 +127,8 @@ class Carrier:
         return Carried(self._matched(wish, part, tell), start)
 
     def _matched(self, wish: Carry, part: Source, tell: Callable[[float], None]) -> Take:
+        from engine.spacetime.retarget import retarget
+
         assert wish.target.head is not None
         layout: Layout | None = named(wish.target.places) if wish.target.places else None
         return retarget(part, wish.target.head, layout=layout, matching=wish.matching, tell=tell)
@@ -142,6 +148,8 @@ class Carrier:
 
 def points_of(performance: Performance) -> Array:
     """Return what tells the frames of a performance apart, (frames, D)."""
+    from engine.spacetime.source import bridge
+
     if performance.capture is None:
         return performance.take.weights
     return bridge(performance.capture.displacements)[0].reshape(len(performance.take), -1)
@@ -157,6 +165,8 @@ def posed(weights: Array, pose: Pose) -> Array:
 
 def opened(path: Path | None) -> Target:
     """Return a head with its 54 markers placed; with none where it lacks the landmarks for them."""
+    from engine.formats.characters.opening import character_of
+
     head = bundled() if path is None else replace(character_of(path), name=path.stem)
     try:
         layout = standard(head)

@@ -27,12 +27,12 @@ from app.session import Change, Session
 from engine.character import Character, bundled
 from engine.formats import markers
 from engine.spacetime.layout import MARKERS
-from engine.spacetime.retarget import Matching
-from engine.spacetime.source import Source, from_markers
+from engine.spacetime.matching import Matching
 from engine.take import SHAPES, Array
 
 if TYPE_CHECKING:
     from engine.editing import Patch
+    from engine.spacetime.source import Source
 
 BEFORE_FRAMES, AFTER_FRAMES = 8, 24  # of the playhead, that are carried live: playing goes on while more is made
 AHEAD_FRAMES = 12  # how near the end of what is known the playhead may come before more is asked for
@@ -154,6 +154,8 @@ class Retargeting(QObject):
         """Read a capture and carry it in place of the take."""
 
         def work() -> Source:
+            from engine.spacetime.source import from_markers
+
             return from_markers(markers.read(path), neutral_frame=neutral_frame)
 
         self._open(path.name, work, lambda capture: self._take_capture(capture, path))

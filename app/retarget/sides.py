@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,8 +14,10 @@ from app.sides import Dot, Side
 from engine.character import Character, bundled
 from engine.errors import EditError
 from engine.spacetime.layout import standard
-from engine.spacetime.source import Source
 from engine.take import Array
+
+if TYPE_CHECKING:
+    from engine.spacetime.source import Source
 
 MARGIN = 0.25  # of a capture's extent, around it
 

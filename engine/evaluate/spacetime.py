@@ -16,7 +16,8 @@ from engine.evaluate import Report, Row, ict
 from engine.evaluate.spacetime_baselines import RANGE, per_frame, per_frame_bounded, per_frame_prior
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import Layout, standard
-from engine.spacetime.retarget import Correspondence, Matching, correspond, match, with_jaw, without_jaw
+from engine.spacetime.matching import Matching
+from engine.spacetime.retarget import Correspondence, correspond, match, with_jaw, without_jaw
 from engine.spacetime.source import Source, from_take, shown, still_of_noise
 from engine.take import MODEL_FPS, Array, Mask, Take
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from engine.spacetime.blocks import BlockCholesky
+from engine.spacetime.matching import Bounds
 from engine.spacetime.system import System
 from engine.take import Array, Mask
 
@@ -21,14 +21,6 @@ Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may r
 
 def silent(_: float) -> None:
     """Tell nobody."""
-
-
-@dataclass(frozen=True)
-class Bounds:
-    """The range that weights must stay in; pins may lie outside."""
-
-    low: float = 0.0
-    high: float = 1.0
 
 
 class BoundedSolver:

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from engine.character import Character
 from engine.errors import EditError
@@ -163,6 +161,9 @@ def _in_front(wanted: Array, points: Array, skin: npt.NDArray[np.int64], unit: f
 
 def _skin(character: Character) -> npt.NDArray[np.int64]:
     """Return the vertices connected to the tip of the nose: no eyes, teeth or brows."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     corners = character.triangles
     ends = np.roll(corners, 1, axis=1)
     count = len(character.neutral)

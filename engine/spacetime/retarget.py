@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -11,9 +11,10 @@ from engine.character import Character
 from engine.errors import EditError
 from engine.spacetime import prior as priors
 from engine.spacetime.align import Warp
-from engine.spacetime.bounded import Bounds, Tell, silent
+from engine.spacetime.bounded import Tell, silent
 from engine.spacetime.closure import GAPS, Gaps, closedness
 from engine.spacetime.layout import Layout, standard
+from engine.spacetime.matching import Matching
 from engine.spacetime.prior import Prior
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.source import Source, bridge
@@ -24,25 +25,6 @@ TIGHTER = 0.8  # of the source's gap: what nearly closes errs on the closed side
 JAW_ROUNDS = 8
 OVER = 1e-6  # of a weight
 UNSEEN_MM = 0.3  # a shape that moves every marker less than this is not told by markers
-
-
-@dataclass(frozen=True)
-class Matching:
-    """What a retarget is asked to respect, beside the source's velocities.
-
-    Attributes
-    ----------
-    alpha : how much the target's likely poses count, at 30 fps; the same on any head (SLS12 equation 4)
-    beta : how much the markers' places count beside their velocities, at 30 fps (section 7.1); velocities alone would
-        let a long-held pose sink back to rest
-    closure : how much lips and lids that meet in the source are to meet in the target
-    bounds : range of the weights, which most programs cut off beyond 0..1; None for the paper's free weights
-    """
-
-    alpha: float = 0.005
-    beta: float = 0.1
-    closure: float = 10.0
-    bounds: Bounds | None = field(default_factory=Bounds)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,8 @@ import numpy as np
 
 from engine.errors import EditError
 from engine.spacetime.blocks import KEPT, BlockCholesky
-from engine.spacetime.bounded import BoundedSolver, Bounds, Tell, silent
+from engine.spacetime.bounded import BoundedSolver, Tell, silent
+from engine.spacetime.matching import Bounds
 from engine.spacetime.modes import Modes
 from engine.spacetime.system import System
 from engine.take import Array, Mask

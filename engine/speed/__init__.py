@@ -9,6 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.performance import demo
+from engine.take import MODEL_FPS, Take
+
 # Each is a module of this package with `measure() -> list[Speed]`.
 METHODS: tuple[str, ...] = ("takes", "drag", "spacetime", "clean", "manifold", "fill", "quality")
 
@@ -40,3 +43,10 @@ def percentile_ms(job: Callable[[int], object], rounds: int, *, percentile: floa
         job(index)
         spent.append(time.perf_counter() - began)
     return float(np.percentile(spent, percentile) * 1e3)
+
+
+def performance_of(seconds: float, fps: float = MODEL_FPS) -> Take:
+    """Return the demo performance, repeated to a length, as a take."""
+    weights = demo.performance().weights
+    frames = round(seconds * fps)
+    return Take(weights=np.tile(weights, (-(-frames // len(weights)), 1))[:frames], fps=fps, name="repeated")

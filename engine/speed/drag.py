@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from engine import editing
-from engine.performance import demo
-from engine.speed import Speed, percentile_ms
-from engine.take import MODEL_FPS, Take
+from engine.speed import Speed, percentile_ms, performance_of
+from engine.take import Take
 
 ROUNDS = 200
 BRUSH_FRAMES = 15
-
-
-def performance_of(seconds: float, fps: float = MODEL_FPS) -> Take:
-    """Return the demo performance, repeated to a length, as a take."""
-    weights = demo.performance().weights
-    frames = round(seconds * fps)
-    return Take(weights=np.tile(weights, (-(-frames // len(weights)), 1))[:frames], fps=fps, name="repeated")
 
 
 def drag_ms(take: Take, rounds: int = ROUNDS) -> float:

@@ -7,8 +7,7 @@ import numpy as np
 from engine.controls import bundled_measurer
 from engine.performance.degrade import Faults, degrade
 from engine.quality import Seen, flags_after, flags_of
-from engine.speed import Speed, percentile_ms
-from engine.speed.drag import performance_of
+from engine.speed import Speed, percentile_ms, performance_of
 
 FPS, DURATION_S = 60.0, 3600.0
 EDIT_FRAMES = 60

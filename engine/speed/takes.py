@@ -8,8 +8,7 @@ from pathlib import Path
 
 from engine.character import bundled
 from engine.formats import read_take, write_take
-from engine.speed import Speed, percentile_ms
-from engine.speed.drag import performance_of
+from engine.speed import Speed, percentile_ms, performance_of
 
 
 def measure() -> list[Speed]:

@@ -19,7 +19,7 @@ from engine.controls import bundled_measurer
 from engine.formats.markers import Markers, write
 from engine.project import replay
 from engine.spacetime.layout import standard
-from engine.spacetime.retarget import Matching
+from engine.spacetime.matching import Matching
 from engine.spacetime.retarget import retarget as carry
 from engine.spacetime.source import from_take
 from engine.take import SHAPE_INDEX, Take

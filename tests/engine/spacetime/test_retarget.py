@@ -14,7 +14,8 @@ from engine.performance import demo
 from engine.spacetime.align import HeadMotion
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import standard
-from engine.spacetime.retarget import Matching, correspond, match, retarget
+from engine.spacetime.matching import Matching
+from engine.spacetime.retarget import correspond, match, retarget
 from engine.spacetime.source import Source, bridge, from_markers, from_take, shown
 from engine.take import SHAPE_INDEX, Array, Take
 

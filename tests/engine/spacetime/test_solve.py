@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from engine.errors import EditError
-from engine.spacetime.bounded import Bounds
+from engine.spacetime.matching import Bounds
 from engine.spacetime.prior import from_shapes
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.system import Position, System
