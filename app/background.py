@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -10,6 +11,8 @@ from typing import Any
 from PySide6.QtCore import QObject, QThread, Signal
 
 from engine.errors import EngineError
+
+SWITCH_S = 0.001  # after which a thread at work gives way to the window; Python's usual 5 ms are seen as a stall
 
 log = logging.getLogger(__name__)
 
@@ -31,6 +34,7 @@ class LatestWins(QObject):
 
     def __init__(self, job: Callable[[Any], Any], *, name: str, close: Callable[[], None] | None = None) -> None:
         super().__init__()
+        sys.setswitchinterval(min(SWITCH_S, sys.getswitchinterval()))
         self._job, self._close = job, close
         self._wake = threading.Condition()
         self._waiting: dict[str, object] = {}  # by channel, oldest first
