@@ -74,7 +74,7 @@ class Measurer:
         return self._rest, self._basis
 
     def _vectors(self, weights: Array) -> Array:
-        moved = _limited(weights) @ self._basis
+        moved = limited(weights) @ self._basis
         return np.asarray(self._rest + moved.reshape(len(weights), -1, 3))
 
     def measure(self, weights: Array) -> Array:
@@ -87,9 +87,9 @@ class Measurer:
         unit = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
         basis = self._basis.reshape(len(SHAPES), -1, 3)
         slope = (unit.transpose(1, 0, 2) @ basis.transpose(1, 2, 0)).transpose(1, 0, 2)  # many times as fast as einsum
-        limited = weights[:, _CLOSE] > weights[:, _JAW]  # there mouthClose follows the jaw instead of its own weight
-        slope[limited, :, _JAW] += slope[limited, :, _CLOSE]
-        slope[limited, :, _CLOSE] = 0.0
+        joined = weights[:, _CLOSE] > weights[:, _JAW]  # there mouthClose follows the jaw instead of its own weight
+        slope[joined, :, _JAW] += slope[joined, :, _CLOSE]
+        slope[joined, :, _CLOSE] = 0.0
         return np.asarray(slope)
 
     def limits(self, samples: Array) -> Array:
@@ -98,12 +98,12 @@ class Measurer:
         return np.stack([measured.min(axis=0), measured.max(axis=0)], axis=1)
 
 
-def _limited(weights: Array) -> Array:
-    """Keep the lips from closing further than the jaw has opened, as the character does when drawn."""
+def limited(weights: Array) -> Array:
+    """Return weights, (frames, 52), whose lips close no further than the jaw has opened, as the character is drawn."""
     close = np.minimum(weights[:, _CLOSE], np.maximum(weights[:, _JAW], 0.0))
-    limited = np.array(weights)
-    limited[:, _CLOSE] = close
-    return limited
+    drawn = np.array(weights)
+    drawn[:, _CLOSE] = close
+    return drawn
 
 
 @lru_cache(maxsize=1)

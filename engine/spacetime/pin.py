@@ -10,7 +10,7 @@ import numpy as np
 
 from engine import exact
 from engine.character import Character, bundled
-from engine.controls import bundled_measurer, control_index
+from engine.controls import bundled_measurer, control_index, limited
 from engine.errors import EditError
 from engine.pose import Pose, filled
 from engine.spacetime import prior
@@ -18,9 +18,12 @@ from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import standard
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.system import Position, System
-from engine.take import SHAPES, Array, Mask, Take, runs
+from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take, runs
 
 FARTHEST_MM = 1000.0
+_CLOSE, _JAW = SHAPE_INDEX["mouthClose"], SHAPE_INDEX["jawOpen"]
+OPENED_MM = 0.05  # less is not seen
+CLOSING_ROUNDS, DAMPING_MM2 = 8, 0.5
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,8 @@ class Spread:
     ) -> None:
         how, face = spreading or Spreading(), _face(character or bundled())
         self._motion, self._held = motion, held
-        closed = how.closure * np.repeat(_let_go(face.gaps.closedness(motion), pins), 3, axis=1)
+        self._gaps, self._closedness = face.gaps, (how.closure > 0) * _let_go(face.gaps.closedness(motion), pins)
+        closed = how.closure * np.repeat(self._closedness, 3, axis=1)
         closed[held.all(axis=1)] = 0.0
         position = Position(face.gaps.rows, closed) if closed.any() else None
         alpha = how.alpha * face.prior.scale(face.basis)
@@ -82,8 +86,35 @@ class Spread:
         """
         change = np.where(self._held, values - self._motion, 0.0)
         moved = self._motion + self._matcher.settle(np.zeros_like(change), change)
-        limited = np.clip(moved, np.minimum(self._motion, 0.0), np.maximum(self._motion, 1.0))
-        return np.where(self._held, values, limited)
+        within = np.clip(moved, np.minimum(self._motion, 0.0), np.maximum(self._motion, 1.0))
+        return self._closed_again(np.where(self._held, values, within))
+
+    def _closed_again(self, moved: Array) -> Array:
+        """Close what limiting the weights has opened: the smallest change, frame by frame, that the weights allow."""
+        before = self._gaps.sizes(limited(self._motion))
+        opened = np.maximum(self._gaps.sizes(limited(moved)) - before, 0.0) * self._closedness
+        rows = np.flatnonzero((opened > OPENED_MM).any(axis=1) & ~self._held.any(axis=1))
+        closed = moved.copy()
+        for _ in range(CLOSING_ROUNDS if len(rows) else 0):
+            closed[rows] += self._closing(closed[rows], before[rows], self._closedness[rows])
+            closed[rows] = np.clip(closed[rows], np.minimum(moved[rows], 0.0), np.maximum(moved[rows], 1.0))
+        return closed
+
+    def _closing(self, weights: Array, before: Array, closedness: Array) -> Array:
+        """Return a damped step, (n, 52), that brings gaps back to their sizes before, (n, g) mm, as far as they were closed."""
+        gaps = self._gaps
+        vectors = gaps.rest + (limited(weights) @ gaps.rows.T).reshape(len(weights), -1, 3)
+        sizes = np.linalg.norm(vectors, axis=2)
+        slope = np.einsum(
+            "ngx,gxs->ngs", vectors / np.maximum(sizes, 1e-9)[..., None], gaps.rows.reshape(-1, 3, len(SHAPES))
+        )
+        joined = weights[:, _CLOSE] > weights[:, _JAW]  # there closing the lips follows the jaw
+        slope[joined, :, _JAW] += slope[joined, :, _CLOSE]
+        slope[joined, :, _CLOSE] = 0.0
+        missing = -np.maximum(sizes - before, 0.0) * closedness
+        slope = np.where(((weights <= 0.0) & (np.einsum("ngs,ng->ns", slope, missing) < 0))[:, None, :], 0.0, slope)
+        gram = slope @ slope.transpose(0, 2, 1) + DAMPING_MM2 * np.eye(slope.shape[1])
+        return np.asarray(np.einsum("ngs,ng->ns", slope, np.linalg.solve(gram, missing[..., None])[..., 0]))
 
 
 @dataclass(frozen=True, eq=False)

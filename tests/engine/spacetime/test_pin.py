@@ -138,3 +138,11 @@ def test_a_real_take_stays_as_it_is_outside_the_range(real_take_path: Path) -> N
     assert edited.weights[1640:].tobytes() == take.weights[1640:].tobytes()
     gaps = [measure(each.weights)[1590:1640, LIPS] for each in (take, edited)]
     assert not ((gaps[0] < 1.5) & (gaps[1] > 3.0)).any()
+
+
+def test_beside_a_pinned_smile_lips_that_met_meet_on_the_face_as_it_is_drawn(take: Take) -> None:
+    solved = PinSolver(take, {80: SMILE}, (50, 111)).solve({80: SMILE})
+    before, after = measure(take.weights[50:111])[:, LIPS], measure(solved)[:, LIPS]
+    shut = before < 1.5
+    assert shut.sum() > 10 and (after[shut] < before[shut] + 0.1).all()
+    assert np.abs(np.diff(after)).max() <= np.abs(np.diff(before)).max() + 0.1  # and none of them pops
