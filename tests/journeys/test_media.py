@@ -14,10 +14,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QPushButton
 from pytestqt.qtbot import QtBot
 
+from app.bench_playback import NullSink
 from app.main_window import MainWindow
 from app.timeline.panel import AUDIO_PX, RULER_PX
 from engine.performance import demo
-from tests.app.playback.sinks import ThreadSink
 from tests.films import film
 from tests.journeys.conftest import load, settled
 
@@ -62,12 +62,12 @@ def button(window: MainWindow, title: str) -> QPushButton:
 def test_sound_is_attached_moved_saved_and_comes_back(
     qtbot: QtBot, window: MainWindow, chosen: list[Path], tmp_path: Path
 ) -> None:
-    window.media._open_sink = ThreadSink
+    window.media._open_sink = NullSink
     session, timeline = window.session, window.timeline
     sound = recording(tmp_path / "elsewhere" / "Ärger 顔.wav")
     attached(qtbot, window, chosen, sound)
     settled(qtbot, window)
-    assert session.undo.undoText() == "attach Ärger 顔.wav" and window.status["sound"].text() == "♪ a thread"
+    assert session.undo.undoText() == "attach Ärger 顔.wav" and window.status["sound"].text() == "♪ nothing"
 
     QTest.mouseMove(timeline, QPoint(round(timeline.x_of(100)), LANE_Y))
     assert timeline.cursor().shape() == Qt.CursorShape.SizeHorCursor

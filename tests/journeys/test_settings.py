@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QApplication, QComboBox
 from pytestqt.qtbot import QtBot
 
 from app import theme
+from app.bench_playback import NullSink
 from app.main_window import MainWindow
 from app.page import Page
 from app.playback import device
@@ -19,7 +20,6 @@ from app.playback.clock import AudioClock
 from app.settings import Settings, log_path
 from app.settings_dialog import SettingsDialog
 from engine.formats.audio import Audio
-from tests.app.playback.sinks import ThreadSink
 
 CONTROL = Qt.KeyboardModifier.ControlModifier
 
@@ -73,7 +73,7 @@ def test_the_loudspeaker_and_scrubbing_are_chosen_while_a_take_is_open(
 ) -> None:
     opened: list[str] = []
 
-    class Named(ThreadSink):
+    class Named(NullSink):
         def __init__(self, rate: int, channels: int, *, wanted: str = "") -> None:
             super().__init__(rate, channels)
             self.name = wanted or "Built-in"

@@ -11,16 +11,16 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from app.bench_playback import NullSink
 from app.main_window import MainWindow
 from app.playback.clock import AudioClock
 from engine.performance import demo
-from tests.app.playback.sinks import ThreadSink
 from tests.films import film, shade
 from tests.journeys.conftest import load, settled
 
 
 def test_what_lies_beside_a_take_is_heard_and_seen(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
-    window.media._open_sink = ThreadSink
+    window.media._open_sink = NullSink
     take = Path(shutil.copy(demo.BUNDLED, tmp_path / "slate.csv"))
     soundfile.write(tmp_path / "slate.wav", np.random.default_rng(0).uniform(-0.5, 0.5, 16_000 * 10), 16_000)
     film(tmp_path / "slate.mp4", [round(1000 * n / 30) for n in range(300)])

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-import time
-
 import numpy as np
 
 from app.playback.clock import Pull
@@ -55,39 +52,3 @@ class SimulatedSink:
 
     def sound(self) -> np.ndarray:
         return np.concatenate(self.played)
-
-
-class ThreadSink:
-    """A device that pulls in real time from a thread of its own, as a real one does."""
-
-    name = "a thread"
-
-    def __init__(self, rate: int, channels: int) -> None:
-        self.rate = rate
-        self.blocks = 0
-        self.late = 0
-        self._stop = threading.Event()
-        self._thread: threading.Thread | None = None
-        self._pull: Pull | None = None
-
-    def start(self, pull: Pull) -> bool:
-        if self._thread is None or not self._thread.is_alive():
-            self._pull = pull
-            self._thread = threading.Thread(target=self._run, name="loudspeaker")
-            self._thread.start()
-        return True
-
-    def close(self) -> None:
-        self._stop.set()
-        if self._thread is not None:
-            self._thread.join()
-
-    def _run(self) -> None:
-        due = time.perf_counter()
-        while not self._stop.wait(max(0.0, due - time.perf_counter())):
-            assert self._pull is not None
-            if self._pull(BLOCK, due + 0.05) is None:
-                return
-            self.blocks += 1
-            self.late += time.perf_counter() > due + 0.05
-            due += BLOCK / self.rate

@@ -8,13 +8,13 @@ import pytest
 import soundfile
 from pytestqt.qtbot import QtBot
 
+from app.bench_playback import NullSink
 from app.playback.clock import AudioClock, WallClock
 from app.playback.device import open_device
 from app.playback.media import Media
 from app.session import Change, Session
 from app.transport import Transport
 from engine.take import SHAPES, Take
-from tests.app.playback.sinks import ThreadSink
 
 RATE = 16_000
 
@@ -23,13 +23,13 @@ class Desk:
     """A session with its transport and media, and the loudspeakers that were opened."""
 
     def __init__(self) -> None:
-        self.sinks: list[ThreadSink] = []
+        self.sinks: list[NullSink] = []
         self.session = Session(Take(weights=np.zeros((90, len(SHAPES))), fps=30.0))
         self.transport = Transport(self.session)
         self.media = Media(self.session, self.transport, self.open_sink)
 
-    def open_sink(self, rate: int, channels: int) -> ThreadSink:
-        self.sinks.append(ThreadSink(rate, channels))
+    def open_sink(self, rate: int, channels: int) -> NullSink:
+        self.sinks.append(NullSink(rate, channels))
         return self.sinks[-1]
 
 
