@@ -100,6 +100,16 @@ def _divide(pieces: list[Piece]) -> tuple[list[Piece], list[Piece]]:
     return early, late
 
 
+def rest_of(pieces: Iterable[Piece], piece: Piece, start: int, stop: int) -> list[Array]:
+    """Return all that pieces hold of the take that a piece was cut from, (frames, 52) each, but its frames [start, stop)."""
+    rest = []
+    for other in pieces:
+        if other.source == piece.source:
+            cut = np.clip(np.array([start, stop]) + piece.first - other.first, 0, len(other.weights))
+            rest += [part for part in (other.weights[: cut[0]], other.weights[cut[1] :]) if len(part) >= SHORTEST]
+    return rest
+
+
 def whole_faces(pieces: Iterable[Piece]) -> list[Piece]:
     """Return the pieces that animate more than mouth and jaw."""
     return [piece for piece in pieces if piece.whole_face]

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from engine.controls import bundled_measurer
-from engine.corpus import Piece, data_folder, load_takes, pieces_of, split
+from engine.corpus import Piece, data_folder, load_takes, pieces_of, rest_of, split
 from engine.errors import EngineError
 from engine.evaluate import motion, spans
 from engine.evaluate.latent import latents_of
@@ -38,9 +38,9 @@ _CONTEXT = 60  # frames on either side, as in use
 _MARGIN = 15  # frames; no hole nearer to a piece's end
 # What each guidance kind can be given to.
 _GUIDED = {
-    "none": ("linear", "hermite", "spline", "spacetime", "nearest"),
-    "keyframes": ("linear", "hermite", "spline", "spacetime", "nearest"),
-    "noisy": ("spacetime", "nearest", "guide"),
+    "none": ("linear", "hermite", "spline", "spacetime", "nearest", "nearest_own"),
+    "keyframes": ("linear", "hermite", "spline", "spacetime", "nearest", "nearest_own"),
+    "noisy": ("spacetime", "nearest", "nearest_own", "guide"),
     "visemes": (),
     "controls": (),
 }
@@ -50,13 +50,14 @@ _GUIDED = {
 class Hole:
     """Truth with a hole: `truth`, (frames, 52), and `mask`, (frames, 52) true where motion is to be made.
 
-    The hole begins at frame `start` of the `piece`-th piece.
+    The hole begins at frame `start` of the `piece`-th piece; `rest`, (frames, 52) each, is all else of its take.
     """
 
     truth: Array
     mask: Mask
     piece: int
     start: int
+    rest: Sequence[Array] = ()
 
     @property
     def rows(self) -> np.ndarray:
@@ -84,12 +85,16 @@ def holes(pieces: Sequence[Piece], frames: int, most: int = MOST) -> list[Hole]:
         truth = piece.weights[first:last]
         mask = np.zeros(truth.shape, bool)
         mask[start - first : start - first + frames, REGIONS["face" if piece.whole_face else "lower"]] = True
-        found.append(Hole(truth, mask, index, start))
+        found.append(Hole(truth, mask, index, start, rest_of(pieces, piece, start, start + frames)))
     return found
 
 
 def guided(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
-    """Return what is known of a hole with one kind of guidance taken from the truth."""
+    """Return what is known of a hole with one kind of guidance taken from the truth, and the rest of its take."""
+    return replace(_told(hole, kind, rng), rest=hole.rest)
+
+
+def _told(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
     known = np.where(hole.mask, np.nan, hole.truth)
     if kind == "keyframes":
         step = round(KEYFRAME_S * MODEL_FPS)
@@ -120,6 +125,7 @@ def network(filler: Filler) -> Method:
 def baselines(training: Sequence[Piece]) -> dict[str, Method]:
     """Return the methods that are not networks; those that need recordings only where there are some."""
     ways: dict[str, Method] = {"linear": spans.linear, "hermite": spans.hermite, "spline": spans.spline}
+    ways["nearest_own"] = lambda gap: spans.Nearest.own(gap.rest)(gap)
     ways["guide"] = lambda gap: np.where(np.isnan(gap.known), gap.guide, gap.known)
     if training:
         faces = np.concatenate([piece.weights for piece in training if piece.whole_face])

@@ -122,6 +122,11 @@ class Nearest:
         self._pieces = [np.asarray(piece.weights) for piece in pieces if piece.whole_face]
         self._mouths = [np.asarray(piece.weights) for piece in pieces]
 
+    @classmethod
+    def own(cls, rest: Sequence[Array]) -> Nearest:
+        """Copy from the rest of the very take that has the hole."""
+        return cls([Piece(weights, True, "") for weights in rest])
+
     def __call__(self, gap: Gap) -> Array:
         """Return the filled weights; straight lines where no recording is as long as the hole."""
         free = np.isnan(gap.known)

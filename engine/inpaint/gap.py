@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from engine.controls import CONTROLS, bundled_measurer
-from engine.inpaint.seams import REACH_FRAMES, bridge, distance_frames
+from engine.inpaint.lend import lent, trust
+from engine.inpaint.seams import REACH_FRAMES, bridge, distance_frames, smoothed
 from engine.speech.visemes import NAMES
-from engine.take import SHAPES, Array
+from engine.take import SHAPES, Array, Mask
 
 RISE_FRAMES = 6.0  # how soon beside a known frame the network may move the face; of 2.5 ... 9 on validation takes
 # How slowly a face far from known frames comes to rest. Absolute errors teach medians: what moves seldom lay flat at
@@ -34,16 +36,29 @@ class Gap:
     guide : (frames, 52) weights of a rough performance to follow
     visemes : (frames, 18) one-hot, all zero where nothing is said of the frame
     controls : (frames, 8) mm, asked control curves
+    rest : (frames, 52) each, what else of the take is known: stretches without holes at the model rate
     """
 
     known: Array
     guide: Array
     visemes: Array
     controls: Array
+    rest: Sequence[Array] = ()
+
+    @property
+    def guided(self) -> Mask:
+        """Which frames a guide, visemes or controls say something of, (frames,) bool."""
+        told = np.isfinite(self.guide).any(axis=1) | np.isfinite(self.controls).any(axis=1)
+        return np.asarray(told | self.visemes.any(axis=1))
 
 
 def gap_of(
-    known: Array, *, guide: Array | None = None, visemes: Array | None = None, controls: Array | None = None
+    known: Array,
+    *,
+    guide: Array | None = None,
+    visemes: Array | None = None,
+    controls: Array | None = None,
+    rest: Sequence[Array] = (),
 ) -> Gap:
     """Return a gap with whatever guidance there is."""
     frames = len(known)
@@ -52,6 +67,7 @@ def gap_of(
         np.full((frames, len(SHAPES)), np.nan) if guide is None else guide,
         np.zeros((frames, len(NAMES))) if visemes is None else visemes,
         np.full((frames, len(CONTROLS)), np.nan) if controls is None else controls,
+        rest,
     )
 
 
@@ -94,16 +110,21 @@ class Ground:
     rise : (frames, 52) in 0..1, how much of the network's motion is let in: none at known values
     features : (frames, FEATURES) float32
     certainty : (frames,) in 0..1, how far what is known settles the pose: one beside known frames and where guided
+    lent : (frames, 52) in 0..1, how much of the base is motion lent by the rest of the take
     """
 
     base: Array
     rise: Array
     features: np.ndarray
     certainty: Array
+    lent: Array
 
 
-def ground(gap: Gap, statistics: Statistics) -> Ground:
+def ground(gap: Gap, statistics: Statistics, rank: int = 0) -> Ground:
     """Return the face under a fill: through seams and pins with their slopes, along the guide, bent to the controls.
+
+    Where nothing steers, it goes along the `rank`-th nearest stretch of the rest of the take. Straight lines between
+    seams, or the face at rest, are what every fill of a long hole then strays about: faces varied half as much as real.
 
     With this under it the network's output needs no reconstruction term outside the mask (the first half of BSS20
     equation 1): what is known stays as it is, to the last bit.
@@ -111,11 +132,13 @@ def ground(gap: Gap, statistics: Statistics) -> Ground:
     distance = distance_frames(gap.known)
     rise = 1 - np.exp(-((distance / RISE_FRAMES) ** 2))
     base = _along_guide(gap, distance, statistics)
+    slow = None if gap.guided.any() else lent(gap.known, gap.rest, rank)
+    share = np.zeros_like(base) if slow is None else trust(gap.known)
+    base = base if slow is None else np.clip(base + share * (slow - base), 0.0, 1.0)
     base = np.where(np.isnan(gap.known), _bent(base, rise, gap.controls, statistics), gap.known)
     nearest = _nearest(gap, distance)
-    guided = np.isfinite(gap.guide).any(axis=1) | np.isfinite(gap.controls).any(axis=1) | gap.visemes.any(axis=1)
-    certainty = np.where(guided, 1.0, np.exp(-nearest / _SETTLED_FRAMES))
-    return Ground(base, rise, _features(gap, base, nearest, statistics), certainty)
+    certainty = np.where(gap.guided, 1.0, np.exp(-nearest / _SETTLED_FRAMES))
+    return Ground(base, rise, _features(gap, base, nearest, statistics), certainty, share)
 
 
 def resting(known: Array, statistics: Statistics) -> Array:
@@ -143,14 +166,6 @@ def _along_guide(gap: Gap, distance: Array, statistics: Statistics) -> Array:
     guided = smoothed(np.where(np.isfinite(gap.guide), gap.guide, plain), GUIDE_SMOOTHING)
     trust = distance**3 / (distance**3 + GUIDE_FRAMES**3)
     return plain + trust * (guided + bridge(gap.known - guided) - plain)
-
-
-def smoothed(curves: Array, passes: int) -> Array:
-    """Return curves, (frames, n), after so many passes of the filter 1/4, 1/2, 1/4."""
-    for _ in range(passes):
-        held = np.concatenate([curves[:1], curves, curves[-1:]])
-        curves = (held[:-2] + 2 * held[1:-1] + held[2:]) / 4
-    return curves
 
 
 def _bent(base: Array, rise: Array, controls: Array, statistics: Statistics) -> Array:

@@ -11,7 +11,8 @@ import numpy as np
 import torch
 
 from engine.inpaint.closures import shut_lips
-from engine.inpaint.gap import Gap, Statistics, ground, resting
+from engine.inpaint.gap import Gap, Ground, Statistics, ground, resting
+from engine.inpaint.lend import LENDERS
 from engine.inpaint.network import Generator, GeneratorConfig, noise_curves
 from engine.models.checkpoint import MODELS, load_model, save_model
 from engine.models.threads import one_thread
@@ -21,6 +22,8 @@ from engine.take import Array
 # at four seconds fills move half as fast as recordings instead of two fifths, for one to two per cent of error (of
 # 1 ... 8 on validation takes; from 4 on lids flutter).
 LIVELINESS = 2.5
+# How much of the network's motion is added over motion lent by the take, which already moves; of 0.2 ... 1 on validation takes.
+OVER_LENT = 0.3
 _STATISTICS = ("mean", "scale", "rest", "spread", "cross")
 
 
@@ -41,17 +44,27 @@ class Filler:
 
         The same seed gives the same motion.
         """
-        under = ground(gap, self.statistics)
-        doubt = (1 - under.certainty)[:, None]
-        features = torch.from_numpy(under.features)[None].expand(len(seeds), -1, -1)
-        drawn = [noise_curves(len(under.base), np.random.default_rng(seed)) for seed in seeds]
-        noise = np.float32(1 + (LIVELINESS - 1) * doubt) * np.stack(drawn)
+        unders = self._grounds(gap, seeds)
+        loud = np.stack([1 + (LIVELINESS - 1) * (1 - one.certainty) * (1 - one.lent.max(axis=1)) for one in unders])
+        drawn = np.stack([noise_curves(len(gap.known), np.random.default_rng(seed)) for seed in seeds])
+        features = torch.from_numpy(np.stack([one.features for one in unders]))
+        noise = torch.from_numpy(np.float32(loud[..., None]) * drawn)
         with torch.inference_mode(), one_thread():
-            motion = self.generator(features, torch.from_numpy(noise)).numpy().astype(np.float64)
-        made = np.clip(under.base + under.rise * motion, 0.0, 1.0)
-        made = np.clip(made + doubt * resting(gap.known, self.statistics), 0.0, 1.0)
-        known = np.where(np.isnan(gap.known), made, gap.known)
-        return np.stack([shut_lips(one, gap) for one in known])
+            motions = self.generator(features, noise).numpy().astype(np.float64)
+        return np.stack([self._landed(gap, under, motion) for under, motion in zip(unders, motions, strict=True)])
+
+    def _grounds(self, gap: Gap, seeds: Sequence[int]) -> list[Ground]:
+        """Return what is under each fill: seeds differ in the stretch of the take that lends its motion."""
+        ranks = [seed % LENDERS if gap.rest else 0 for seed in seeds]
+        under = {rank: ground(gap, self.statistics, rank) for rank in sorted(set(ranks))}
+        return [under[rank] for rank in ranks]
+
+    def _landed(self, gap: Gap, under: Ground, motion: Array) -> Array:
+        made = np.clip(under.base + under.rise * (1 - (1 - OVER_LENT) * under.lent) * motion, 0.0, 1.0)
+        if not under.lent.any():
+            doubt = (1 - under.certainty)[:, None]
+            made = np.clip(made + doubt * resting(gap.known, self.statistics), 0.0, 1.0)
+        return shut_lips(np.where(np.isnan(gap.known), made, gap.known), gap)
 
 
 def save_filler(path: Path, filler: Filler) -> None:

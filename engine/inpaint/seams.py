@@ -47,15 +47,39 @@ def land(made: Array, known: Array, *, reach_frames: float = REACH_FRAMES, hold:
 
 def distance_frames(known: Array) -> Array:
     """Return how many frames each unknown value is from the nearest known one of its curve, 0 where known."""
+    before, after = _sides(known)
+    return np.minimum(before, after)
+
+
+def room_frames(known: Array) -> Array:
+    """Return the harmonic sum of the frames to the known values on either side of its curve, 0 where known.
+
+    ``1 / (1 / before + 1 / after)``: how far a random walk strays between two values that it must meet.
+    """
+    before, after = _sides(known)
+    return before * after / np.maximum(before + after, 1)
+
+
+def _sides(known: Array) -> tuple[Array, Array]:
+    """Return how many frames each value is from the known ones before and after it, far more than there are at ends."""
     frames = len(known)
-    distance = np.empty(known.shape)
+    sides = np.empty((2, *known.shape))
     for columns, unknown in _patterns(np.isnan(known), with_known=True):
         there = np.setdiff1d(np.arange(frames), unknown)
         at = np.searchsorted(there, np.arange(frames))
         before = np.where(at > 0, there[np.maximum(at - 1, 0)] if len(there) else 0, -2 * frames)
         after = np.where(at < len(there), there[np.minimum(at, len(there) - 1)] if len(there) else 0, 3 * frames)
-        distance[:, columns] = np.minimum(np.arange(frames) - before, after - np.arange(frames))[:, None]
-    return distance
+        before = np.where(np.isin(np.arange(frames), there), np.arange(frames), before)
+        sides[:, :, columns] = np.stack([np.arange(frames) - before, after - np.arange(frames)])[:, :, None]
+    return sides[0], sides[1]
+
+
+def smoothed(curves: Array, passes: int) -> Array:
+    """Return curves, (frames, n), after so many passes of the filter 1/4, 1/2, 1/4."""
+    for _ in range(passes):
+        held = np.concatenate([curves[:1], curves, curves[-1:]])
+        curves = (held[:-2] + 2 * held[1:-1] + held[2:]) / 4
+    return curves
 
 
 def _patterns(unknown: Mask, *, with_known: bool = False) -> Iterator[tuple[np.ndarray, np.ndarray]]:

@@ -216,7 +216,7 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
         trainer = Trainer(material, settings, adversary=adversary)
         with one_thread():
             seconds = _run(trainer, out, name, report)
-        figures[name] = validation_figures(trainer.filler(), validation)
+        figures[name] = validation_figures(trainer.filler(), validation, training)
         report(f"{name}: {figures[name]}")
         save_filler(out / f"{name}.safetensors", trainer.filler())
         save_card(out / f"{name}.safetensors", _card(name, training, settings, figures[name], seconds))

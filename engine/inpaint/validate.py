@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from engine.corpus import Piece
+from engine.corpus import Piece, rest_of
 from engine.evaluate.motion import npss
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler
@@ -18,8 +18,13 @@ SPANS_S = (0.2, 0.5, 1.0, 2.0, 3.0)
 CONTEXT = 60  # frames on either side, as in use
 
 
-def validation_gaps(pieces: Sequence[Piece], frames: int) -> list[tuple[Array, Mask, Gap]]:
-    """Return truth, hole and unguided gap at regular places of the pieces, the mouth alone where only it moves."""
+def validation_gaps(
+    pieces: Sequence[Piece], frames: int, others: Sequence[Piece] = ()
+) -> list[tuple[Array, Mask, Gap]]:
+    """Return truth, hole and unguided gap at regular places of the pieces, the mouth alone where only it moves.
+
+    `others` are further pieces of the same takes, which may lend motion.
+    """
     found = []
     for piece in pieces:
         region = REGIONS["face" if piece.whole_face else "lower"]
@@ -28,11 +33,14 @@ def validation_gaps(pieces: Sequence[Piece], frames: int) -> list[tuple[Array, M
             truth = piece.weights[first:last]
             hole = np.zeros(truth.shape, bool)
             hole[start - first : start - first + frames, region] = True
-            found.append((truth, hole, gap_of(np.where(hole, np.nan, truth))))
+            rest = rest_of([*pieces, *others], piece, start, start + frames)
+            found.append((truth, hole, gap_of(np.where(hole, np.nan, truth), rest=rest)))
     return found
 
 
-def validation_figures(filler: Filler, pieces: Sequence[Piece]) -> dict[str, list[float]]:
+def validation_figures(
+    filler: Filler, pieces: Sequence[Piece], others: Sequence[Piece] = ()
+) -> dict[str, list[float]]:
     """Return MAE, velocity MAE and NPSS of unguided fills for each of `SPANS_S`, beside the plain bridge's."""
     figures: dict[str, list[float]] = {}
     ways: dict[str, Callable[[Gap], Array]] = {
@@ -40,7 +48,7 @@ def validation_figures(filler: Filler, pieces: Sequence[Piece]) -> dict[str, lis
         "bridge": lambda gap: bridge(gap.known),
     }
     for span in SPANS_S:
-        gaps = validation_gaps(pieces, round(span * MODEL_FPS))
+        gaps = validation_gaps(pieces, round(span * MODEL_FPS), others)
         for way, make in ways.items():
             pairs = [(truth, hole, make(gap)) for truth, hole, gap in gaps]
             for name, value in _figures(pairs).items():
