@@ -31,10 +31,12 @@ class Performance:
     ----------
     weights : (frames, 52) in 0..1 at the model rate
     visemes : (frames,) int, −1 where unknown
+    rest : (frames, 52) each, what comes before and after in the same take, where it is a window of one
     """
 
     weights: Array
     visemes: np.ndarray
+    rest: Sequence[Array] = ()
 
 
 @dataclass(frozen=True)
@@ -118,8 +120,8 @@ def draw(material: Sequence[Performance], frames: int, rng: np.random.Generator)
     one = material[int(rng.choice(len(material), p=lengths / lengths.sum()))]
     room = len(one.weights) - frames
     if room >= 0:
-        start = int(rng.integers(room + 1))
-        return Performance(one.weights[start : start + frames], one.visemes[start : start + frames])
+        start, stop = (begin := int(rng.integers(room + 1))), begin + frames
+        return Performance(one.weights[start:stop], one.visemes[start:stop], (one.weights[:start], one.weights[stop:]))
     start = int(rng.integers(len(one.weights)))
     both = np.concatenate([one.weights, one.visemes[:, None]], axis=1)
     both = window(both, frames, start)
@@ -146,6 +148,7 @@ def random_gap(truth: Performance, help_: Help, rng: np.random.Generator) -> Gap
         guide=guide,
         visemes=said,
         controls=_some_controls(truth, inside, help_, rng) if wanted["controls"] else None,
+        rest=truth.rest,
     )
 
 

@@ -15,6 +15,7 @@ from torch import Tensor
 from engine.corpus import Piece, split
 from engine.inpaint.gap import Statistics, ground, statistics_of
 from engine.inpaint.infer import Filler, save_filler
+from engine.inpaint.lend import LENDERS
 from engine.inpaint.losses import Batch, Shares, fill_losses, scatter, spectrum_gap
 from engine.inpaint.material import Help, Performance, draw, listened, performances, random_gap
 from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, noise_curves, see
@@ -45,18 +46,26 @@ class Settings:
     help: Help = field(default_factory=Help)
 
 
-def make_batch(
-    material: Sequence[Performance], statistics: Statistics, settings: Settings, rng: np.random.Generator, size: int
-) -> Batch:
-    """Draw windows, tear holes and prepare what the generator sees."""
-    rows = []
-    for _ in range(size):
-        truth = draw(material, settings.frames, rng)
-        gap = random_gap(truth, settings.help, rng)
-        under = ground(gap, statistics)
-        hole = np.isnan(gap.known)
-        rows.append((truth.weights, under.base, under.rise, under.features, hole, under.certainty[:, None]))
-    return Batch(*(torch.tensor(np.stack(part), dtype=torch.float32) for part in zip(*rows, strict=True)))
+def make_batches(
+    material: Sequence[Performance],
+    statistics: Statistics,
+    settings: Settings,
+    rng: np.random.Generator,
+    size: int,
+    ranks: Sequence[int | None] = (None,),
+) -> list[Batch]:
+    """Draw windows, tear holes and prepare what the generator sees, once per rank of what the take lends; None lends nothing."""
+    truths = [draw(material, settings.frames, rng) for _ in range(size)]
+    gaps = [random_gap(truth, settings.help, rng) for truth in truths]
+    made = []
+    for rank in ranks:
+        rows = []
+        for truth, gap in zip(truths, gaps, strict=True):
+            under = ground(gap if rank is not None else replace(gap, rest=()), statistics, rank or 0)
+            hole = np.isnan(gap.known)
+            rows.append((truth.weights, under.base, under.rise, under.features, hole, under.certainty[:, None]))
+        made.append(Batch(*(torch.tensor(np.stack(part), dtype=torch.float32) for part in zip(*rows, strict=True))))
+    return made
 
 
 class Trainer:
@@ -98,12 +107,14 @@ class Trainer:
         against = part and self._adversary
         self._pace(part)
         size = settings.batch // 2 if against else settings.batch
-        batch = make_batch(self._material, self.statistics, settings, rng, size)
+        ranks = rng.choice(LENDERS, 2, replace=False).tolist() if against else (None,)
+        batches = make_batches(self._material, self.statistics, settings, rng, size, ranks)
+        made = self._generate(batches, rng)
         if against:
-            terms = self._against(batch, *self._generate(batch, 2, rng))
+            terms = self._against(batches[0], *made)
         else:
             shares = replace(settings.shares, far=1.0)  # truth counts everywhere: nothing else would
-            terms = _means(fill_losses(self._generate(batch, 1, rng)[0], batch, self._distances, shares))
+            terms = _means(fill_losses(made[0], batches[0], self._distances, shares))
         self._make.zero_grad()
         torch.stack([term for name, term in terms.items() if not name.startswith("judge")]).sum().backward()  # type: ignore[no-untyped-call]
         torch.nn.utils.clip_grad_norm_(self.generator.parameters(), 1.0)
@@ -119,18 +130,20 @@ class Trainer:
         for group, pace in zip(self._make.param_groups, (1.0, self.settings.filter_pace), strict=True):
             group["lr"] = rate * pace
 
-    def _generate(self, batch: Batch, copies: int, rng: np.random.Generator) -> Tensor:
-        """Fill each window `copies` times with different noise, (copies, batch, frames, 52)."""
-        size, frames = batch.truth.shape[:2]
-        noise = torch.from_numpy(np.stack([noise_curves(frames, rng) for _ in range(copies * size)]))
-        motion = self.generator(batch.features.repeat(copies, 1, 1), noise).unflatten(0, (copies, size))
-        made: Tensor = batch.base + batch.rise * motion
+    def _generate(self, batches: Sequence[Batch], rng: np.random.Generator) -> Tensor:
+        """Fill each window once on each ground, with different noise, (grounds, batch, frames, 52)."""
+        size, frames = batches[0].truth.shape[:2]
+        noise = torch.from_numpy(np.stack([noise_curves(frames, rng) for _ in range(len(batches) * size)]))
+        motion = self.generator(torch.cat([batch.features for batch in batches]), noise)
+        rises, bases = (torch.stack([getattr(batch, name) for batch in batches]) for name in ("rise", "base"))
+        made: Tensor = bases + rises * motion.unflatten(0, (len(batches), size))
         return made
 
     def _against(self, batch: Batch, one: Tensor, other: Tensor) -> dict[str, Tensor]:
         """Let the discriminator learn, then return the generator's terms with its score (equations 2 and 3).
 
-        Each window is filled twice with different noise, so that how fills differ can be held to how truths would.
+        Each window is filled twice, with different noise over different stretches of its take, so that how fills differ
+        can be held to how truths would. Without an adversary nothing is lent: errors would teach to undo it.
         """
         shares, fakes = self.settings.shares, [self._seen(one), self._seen(other)]
         pair = [fill_losses(made, batch, self._distances, shares) for made in (one, other)]

@@ -38,9 +38,7 @@ def validation_gaps(
     return found
 
 
-def validation_figures(
-    filler: Filler, pieces: Sequence[Piece], others: Sequence[Piece] = ()
-) -> dict[str, list[float]]:
+def validation_figures(filler: Filler, pieces: Sequence[Piece], others: Sequence[Piece] = ()) -> dict[str, list[float]]:
     """Return MAE, velocity MAE and NPSS of unguided fills for each of `SPANS_S`, beside the plain bridge's."""
     figures: dict[str, list[float]] = {}
     ways: dict[str, Callable[[Gap], Array]] = {
