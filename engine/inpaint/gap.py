@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.controls import CONTROLS, bundled_measurer
+from engine.inpaint.expected import bundled as bundled_expected
 from engine.inpaint.lend import lent, trust
 from engine.inpaint.seams import REACH_FRAMES, bridge, distance_frames, smoothed
 from engine.speech.visemes import NAMES
@@ -21,6 +22,7 @@ GUIDE_SMOOTHING = 8  # passes; the error of the ground alone falls up to 12 on v
 GUIDE_FRAMES = 5.0  # how far from known frames a guide begins to tell more than they do; of 2 ... 8 on validation takes
 _NEAR_FRAMES = 8.0  # scale on which nearness to known frames is shown to the network
 _SETTLED_FRAMES = 12.0  # how far from known frames motion is still largely settled by them
+CARRY_FRAMES = 30.0  # how slowly a face leaves the seams for the one that controls let expect; of 10 ... 100 likewise
 _CONTROL_NOISE = 0.5  # mm; what a control curve is trusted to, of 0.1 ... 2 on validation takes
 
 FEATURES = 3 * len(SHAPES) + 1 + len(NAMES) + 3 * len(CONTROLS) + 2
@@ -131,7 +133,7 @@ def ground(gap: Gap, statistics: Statistics, rank: int = 0) -> Ground:
     """
     distance = distance_frames(gap.known)
     rise = 1 - np.exp(-((distance / RISE_FRAMES) ** 2))
-    base = _along_guide(gap, distance, statistics)
+    base = _as_expected(_along_guide(gap, distance, statistics), gap)
     slow = None if gap.guided.any() else lent(gap.known, gap.rest, rank)
     share = np.zeros_like(base) if slow is None else trust(gap.known)
     base = base if slow is None else np.clip(base + share * (slow - base), 0.0, 1.0)
@@ -166,6 +168,19 @@ def _along_guide(gap: Gap, distance: Array, statistics: Statistics) -> Array:
     guided = smoothed(np.where(np.isfinite(gap.guide), gap.guide, plain), GUIDE_SMOOTHING)
     trust = distance**3 / (distance**3 + GUIDE_FRAMES**3)
     return plain + trust * (guided + bridge(gap.known - guided) - plain)
+
+
+def _as_expected(base: Array, gap: Gap) -> Array:
+    """Return the face to expect where controls are asked, carried onto all that is known; a guide tells more than it."""
+    asked = np.isfinite(gap.controls)
+    if not asked.any() or np.isfinite(gap.guide).any():
+        return base
+    hole = np.isnan(gap.known).any(axis=1)
+    around = np.where(asked.any(axis=0), bundled_measurer().measure(base), np.nan)
+    face = bundled_expected().face(np.where(hole[:, None], gap.controls, around))
+    carry = np.full(len(base), 1 / (REACH_FRAMES * CARRY_FRAMES) ** 2)
+    told = smoothed(np.float64(asked.any(axis=1) | ~hole)[:, None], GUIDE_SMOOTHING)
+    return base + told * (face + bridge(gap.known - face, hold=carry) - base)
 
 
 def _bent(base: Array, rise: Array, controls: Array, statistics: Statistics) -> Array:
