@@ -19,10 +19,11 @@ RISE_FRAMES = 6.0  # how soon beside a known frame the network may move the face
 # How slowly a face far from known frames comes to rest. Absolute errors teach medians: what moves seldom lay flat at
 # nought all along a span, which cost half of its NPSS. Of 10 ... 250 on validation takes; one per cent of error at 3 s.
 REST_FRAMES = 100.0
-GUIDE_SMOOTHING = 3  # passes over a guide, of 2 ... 10 on validation takes
+GUIDE_SMOOTHING = 2  # passes over a guide, of 2 ... 10 on validation takes
 GUIDE_FRAMES = 1.6  # how far from known frames a guide begins to tell more than they do; likewise
 # What a guide is believed against: so many times its jitter, such a share of its level for a wrong gain, and so little.
-JITTER, GAIN, LEAST = 1.25, 0.25, 0.005
+JITTER, GAIN, LEAST = 1.25, 0.2, 0.005
+_FULL = 1.2  # of the filter's answer; so much is lost to smoothing
 _AROUND = 4.0  # frames over which jitter and level of a guide are measured
 _NEAR_FRAMES = 8.0  # scale on which nearness to known frames is shown to the network
 _SETTLED_FRAMES = 12.0  # how far from known frames motion is still largely settled by them
@@ -189,7 +190,7 @@ def _belief(away: Array, guide: Array, told: Mask) -> Array:
     there[1:-1] = told[:-2] & told[1:-1] & told[2:]
     power, level = _mean_around(away**2, told), _mean_around(guide, told)
     doubt = JITTER**2 * _mean_around(jitter, there) + (GAIN * level) ** 2 + LEAST**2
-    return np.asarray(power / (power + doubt))
+    return np.asarray(np.minimum(1.0, _FULL * power / (power + doubt)))
 
 
 def _mean_around(values: Array, there: Mask) -> Array:
