@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -40,7 +41,7 @@ def lent(known: Array, rest: Sequence[Array], rank: int = 0) -> Array | None:
     first, last = max(0, int(hole[0]) - _AROUND), min(len(known), int(hole[-1]) + 1 + _AROUND)
     borders = np.linspace(first, last, int(np.ceil((hole[-1] + 1 - hole[0]) / longest)) + 1).round().astype(int)
     motion = known.copy()
-    for start, stop in zip(borders[:-1], borders[1:], strict=True):
+    for start, stop in pairwise(borders):
         begin = max(first, start - _AROUND)
         wanted = motion[begin:stop].copy()
         stretch = _stretch(wanted, rest, rank)
