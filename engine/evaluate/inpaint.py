@@ -128,11 +128,12 @@ def network(filler: Filler) -> Method:
 def baselines(training: Sequence[Piece]) -> dict[str, Method]:
     """Return the methods that are not networks; those that need recordings only where there are some."""
     ways: dict[str, Method] = {"linear": spans.linear, "hermite": spans.hermite, "spline": spans.spline}
-    ways["nearest_own"] = lambda gap: spans.Nearest.own(gap.rest)(gap)
     ways["guide"] = lambda gap: np.where(np.isnan(gap.known), gap.guide, gap.known)
     if training:
         faces = np.concatenate([piece.weights for piece in training if piece.whole_face])
         ways |= {"spacetime": spans.Propagation(faces), "nearest": spans.Nearest(training)}
+    spread = bundled().statistics.scale
+    ways["nearest_own"] = lambda gap: spans.Nearest.own(gap.rest, spread)(gap)
     return ways
 
 

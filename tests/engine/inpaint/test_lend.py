@@ -14,6 +14,8 @@ from engine.take import SHAPES, Array, Take
 
 WAVES = np.random.default_rng(0).uniform(20, 70, len(SHAPES))  # frames, a period for each shape
 
+EVEN = np.ones(len(SHAPES))
+
 
 def moving(frames: int, first: int = 0) -> Array:
     return 0.5 + 0.4 * np.sin(2 * np.pi * (first + np.arange(frames))[:, None] / WAVES)
@@ -37,7 +39,7 @@ def test_costs_equal_a_plain_loop() -> None:
 def test_a_take_that_did_it_before_lends_just_that(length: int) -> None:
     truth = moving(length + 60)
     before = np.concatenate([np.random.default_rng(1).random((50, len(SHAPES))), truth, moving(40, 9000)])
-    made = lent(torn(truth, 30, 30 + length), [before])
+    made = lent(torn(truth, 30, 30 + length), [before], EVEN)
     assert made is not None
     assert np.abs(made - truth).mean() < 0.02 < np.abs(truth - truth.mean(axis=0)).mean() / 5
 
@@ -45,7 +47,7 @@ def test_a_take_that_did_it_before_lends_just_that(length: int) -> None:
 def test_lent_motion_goes_through_seams_and_pins() -> None:
     known = torn(moving(180), 30, 150)
     known[80, :20] = 0.9
-    made = lent(known, [moving(500, 5000)])
+    made = lent(known, [moving(500, 5000)], EVEN)
     there = np.isfinite(known)
     assert made is not None
     np.testing.assert_allclose(made[there], known[there], atol=1e-12)
@@ -54,7 +56,7 @@ def test_lent_motion_goes_through_seams_and_pins() -> None:
 def test_ranks_lend_different_stretches_of_which_the_first_is_nearest() -> None:
     truth = moving(150)
     known, rest = torn(truth, 30, 120), [moving(900, 4000)]
-    made = [lent(known, rest, rank) for rank in range(3)]
+    made = [lent(known, rest, EVEN, rank) for rank in range(3)]
     assert all(one is not None for one in made)
     off = [float(np.abs(made[0] - made[rank]).max()) for rank in (1, 2)]  # type: ignore[operator]
     assert min(off) > 0.05
@@ -62,8 +64,8 @@ def test_ranks_lend_different_stretches_of_which_the_first_is_nearest() -> None:
 
 def test_a_stretch_is_lent_only_where_one_is_long_enough() -> None:
     known = torn(moving(150), 30, 120)
-    assert lent(known, []) is None and lent(known, [moving(40)]) is None
-    assert lent(known, [moving(60)]) is not None
+    assert lent(known, [], EVEN) is None and lent(known, [moving(40)], EVEN) is None
+    assert lent(known, [moving(60)], EVEN) is not None
 
 
 def test_what_is_lent_counts_for_nothing_where_something_is_known_and_all_far_from_seams() -> None:
