@@ -18,10 +18,10 @@ from engine.controls import CONTROL_INDEX, bundled_measurer
 from engine.corpus import split
 from engine.inpaint.material import Help, Performance, draw, performances
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.models.unet import ALIGNMENT, UNet
 from engine.take import SHAPES, Array
 
 FRAMES, BATCH, STEPS, SEED = 64, 64, 800, 0
-ALIGNMENT = 4
 THREE = ("lips_vertical", "lips_horizontal", "eyelid_left")  # BSS20 section 5.2: mouth opening, corners, one eyelid
 
 
@@ -54,29 +54,6 @@ class HSK16(nn.Module):
     def trained(self, stage: int) -> list[nn.Module]:
         """Return the parts that learn in a stage."""
         return [self.encode, self.decode] if stage == 0 else [self.regress]
-
-
-def _block(inputs: int, outputs: int) -> nn.Sequential:
-    return nn.Sequential(nn.BatchNorm1d(inputs), nn.Conv1d(inputs, outputs, 3, padding=1), nn.ELU())
-
-
-class UNet(nn.Module):
-    """The network of BSBS19 figure 5: three resolutions with skip connections."""
-
-    def __init__(self, inputs: int, outputs: int) -> None:
-        super().__init__()
-        self.down1, self.down2, self.bottom = _block(inputs, 32), _block(32, 64), _block(64, 128)
-        self.up2, self.up1 = _block(192, 64), _block(96, 32)
-        self.last = nn.Conv1d(32, outputs, 3, padding=1)
-        self.pool, self.grow = nn.MaxPool1d(2), nn.Upsample(scale_factor=2)
-
-    def forward(self, curves: Tensor) -> Tensor:
-        """Map curves, (batch, inputs, frames) -> (batch, outputs, frames)."""
-        fine = self.down1(curves)
-        half = self.down2(self.pool(fine))
-        half = self.up2(torch.cat([self.grow(self.bottom(self.pool(half))), half], dim=1))
-        made: Tensor = self.last(self.up1(torch.cat([self.grow(half), fine], dim=1)))
-        return made
 
 
 class BSBS19(nn.Module):

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.controls import CONTROLS, bundled_measurer
+from engine.inpaint.expected import bundled as bundled_expected
 from engine.inpaint.lend import lent, trust
 from engine.inpaint.seams import REACH_FRAMES, bridge, distance_frames, smoothed
 from engine.speech.visemes import NAMES
@@ -21,6 +22,8 @@ GUIDE_SMOOTHING = 8  # passes; the error of the ground alone falls up to 12 on v
 GUIDE_FRAMES = 5.0  # how far from known frames a guide begins to tell more than they do; of 2 ... 8 on validation takes
 _NEAR_FRAMES = 8.0  # scale on which nearness to known frames is shown to the network
 _SETTLED_FRAMES = 12.0  # how far from known frames motion is still largely settled by them
+CARRY_FRAMES = 30.0  # how slowly a face leaves the seams for the one that controls let expect; of 10 ... 100 likewise
+LIFE_FRAMES = 30.0  # how far from known frames life comes under controls
 _CONTROL_NOISE = 0.5  # mm; what a control curve is trusted to, of 0.1 ... 2 on validation takes
 
 FEATURES = 3 * len(SHAPES) + 1 + len(NAMES) + 3 * len(CONTROLS) + 2
@@ -131,11 +134,11 @@ def ground(gap: Gap, statistics: Statistics, rank: int = 0) -> Ground:
     """
     distance = distance_frames(gap.known)
     rise = 1 - np.exp(-((distance / RISE_FRAMES) ** 2))
-    base = _along_guide(gap, distance, statistics)
+    base = _as_expected(_along_guide(gap, distance, statistics), gap)
     slow = None if gap.guided.any() else lent(gap.known, gap.rest, statistics.scale, rank)
     share = np.zeros_like(base) if slow is None else trust(gap.known)
     base = base if slow is None else np.clip(base + share * (slow - base), 0.0, 1.0)
-    base = np.where(np.isnan(gap.known), _bent(base, rise, gap.controls, statistics), gap.known)
+    base = np.where(np.isnan(gap.known), bent(base, rise, gap.controls, statistics), gap.known)
     nearest = _nearest(gap, distance)
     certainty = np.where(gap.guided, 1.0, np.exp(-nearest / _SETTLED_FRAMES))
     return Ground(base, rise, _features(gap, base, nearest, statistics), certainty, share)
@@ -168,19 +171,57 @@ def _along_guide(gap: Gap, distance: Array, statistics: Statistics) -> Array:
     return plain + trust * (guided + bridge(gap.known - guided) - plain)
 
 
-def _bent(base: Array, rise: Array, controls: Array, statistics: Statistics) -> Array:
-    """Move a face towards asked controls by linear regression on those that are asked for."""
+def _as_expected(base: Array, gap: Gap) -> Array:
+    """Return the face to expect where controls are asked, carried onto all that is known; a guide tells more than it."""
+    asked = np.isfinite(gap.controls)
+    if not asked.any() or np.isfinite(gap.guide).any():
+        return base
+    hole: Mask = np.asarray(np.isnan(gap.known).any(axis=1))
+    around = np.where(asked.any(axis=0), bundled_measurer().measure(base), np.nan)
+    face = bundled_expected().face(np.where(hole[:, None], gap.controls, around))
+    carry = np.full(len(base), 1 / (REACH_FRAMES * CARRY_FRAMES) ** 2)
+    told = smoothed((asked.any(axis=1) | ~hole).astype(np.float64)[:, None], GUIDE_SMOOTHING)
+    return base + told * (face + bridge(gap.known - face, hold=carry) - base)
+
+
+def bent(base: Array, rise: Array, controls: Array, statistics: Statistics) -> Array:
+    """Move a face, (frames, 52), towards asked controls by linear regression on those that are asked for."""
     asked = np.isfinite(controls)
+    if not asked.any():
+        return base
     missing = np.where(asked, controls - bundled_measurer().measure(base), 0.0)
     moved = np.array(base)
     for pattern in np.unique(asked, axis=0):
         if pattern.any():
             rows, columns = (asked == pattern).all(axis=1), np.flatnonzero(pattern)
-            spread = statistics.spread[np.ix_(columns, columns)] + _CONTROL_NOISE**2 * np.eye(len(columns))
-            gain = np.linalg.solve(spread, statistics.cross[columns])
-            moved[rows] += rise[rows] * (missing[np.ix_(rows, columns)] @ gain)
+            moved[rows] += rise[rows] * (missing[np.ix_(rows, columns)] @ _gain(columns, statistics))
             moved[rows] = np.where(rise[rows] > 0, np.clip(moved[rows], 0.0, 1.0), base[rows])
     return moved
+
+
+def _gain(columns: np.ndarray, statistics: Statistics) -> Array:
+    """Return how weights follow some controls on average, (controls, 52) per mm."""
+    spread = statistics.spread[np.ix_(columns, columns)] + _CONTROL_NOISE**2 * np.eye(len(columns))
+    return np.asarray(np.linalg.solve(spread, statistics.cross[columns]))
+
+
+def left_open(gap: Gap, statistics: Statistics) -> Array:
+    """Return how much of each weight's spread asked controls leave open, (frames, 52) in 0..1.
+
+    None where no control is asked, along a guide and beside what is known.
+    """
+    asked = np.isfinite(gap.controls)
+    columns = np.flatnonzero(asked.any(axis=0))
+    settled = (statistics.cross[columns] * _gain(columns, statistics)).sum(axis=0) / statistics.scale**2
+    far = 1 - np.exp(-_nearest(gap, distance_frames(gap.known)) / LIFE_FRAMES)
+    told = asked.any(axis=1) & ~np.isfinite(gap.guide).any(axis=1)
+    return np.asarray((far * told)[:, None] * np.sqrt(np.clip(1 - settled, 0.0, 1.0)))
+
+
+def unsteered(gap: Gap, base: Array, statistics: Statistics) -> np.ndarray:
+    """Return features, (frames, FEATURES) float32, that show a base without the controls that it was bent to."""
+    loose = replace(gap, controls=np.full_like(gap.controls, np.nan))
+    return _features(loose, base, _nearest(gap, distance_frames(gap.known)), statistics)
 
 
 def _features(gap: Gap, base: Array, nearest: Array, statistics: Statistics) -> np.ndarray:

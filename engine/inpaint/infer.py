@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from scipy.ndimage import gaussian_filter1d
 
 from engine.inpaint.closures import shut_lips
-from engine.inpaint.gap import Gap, Ground, Statistics, ground, resting
+from engine.inpaint.gap import Gap, Ground, Statistics, bent, ground, left_open, resting, unsteered
 from engine.inpaint.lend import LENDERS
 from engine.inpaint.network import Generator, GeneratorConfig, noise_curves
 from engine.models.checkpoint import MODELS, load_model, save_model
@@ -24,6 +25,10 @@ from engine.take import Array
 LIVELINESS = 2.5
 # How much of the network's motion is added over motion lent by the take, which already moves; of 0.2 ... 1 on validation takes.
 OVER_LENT = 0.3
+# Control curves settle how a face goes on the whole and leave its quick motion open. What the network would do unsteered,
+# less its part below one hertz, brings a face under three curves from half as lively as real to seven tenths for one per
+# cent of squared error; with its slow part the error grows by a tenth (of 4 ... 16 frames on validation takes).
+QUICK_FRAMES = 6.0
 _STATISTICS = ("mean", "scale", "rest", "spread", "cross")
 
 
@@ -49,9 +54,21 @@ class Filler:
         drawn = np.stack([noise_curves(len(gap.known), np.random.default_rng(seed)) for seed in seeds])
         features = torch.from_numpy(np.stack([one.features for one in unders]))
         noise = torch.from_numpy(np.float32(loud[..., None]) * drawn)
-        with torch.inference_mode(), one_thread():
-            motions = self.generator(features, noise).numpy().astype(np.float64)
+        motions = self._motions(features, noise) + self._life(gap, unders[0], drawn)
         return np.stack([self._landed(gap, under, motion) for under, motion in zip(unders, motions, strict=True)])
+
+    def _motions(self, features: torch.Tensor, noise: torch.Tensor) -> Array:
+        with torch.inference_mode(), one_thread():
+            return np.asarray(self.generator(features, noise).numpy().astype(np.float64))
+
+    def _life(self, gap: Gap, under: Ground, drawn: Array) -> Array:
+        """Return quick motion that asked controls leave open, (seeds, frames, 52); nothing where none is asked."""
+        if not np.isfinite(gap.controls).any():
+            return np.zeros((len(drawn), *gap.known.shape))
+        features = torch.from_numpy(unsteered(gap, under.base, self.statistics))[None].expand(len(drawn), -1, -1)
+        motions = self._motions(features, torch.from_numpy(drawn))
+        quick = motions - gaussian_filter1d(motions, QUICK_FRAMES, axis=1, mode="nearest")
+        return np.asarray(left_open(gap, self.statistics) * quick)
 
     def _grounds(self, gap: Gap, seeds: Sequence[int]) -> list[Ground]:
         """Return what is under each fill: seeds differ in the stretch of the take that lends its motion."""
@@ -64,6 +81,7 @@ class Filler:
         if not under.lent.any():
             doubt = (1 - under.certainty)[:, None]
             made = np.clip(made + doubt * resting(gap.known, self.statistics), 0.0, 1.0)
+        made = bent(made, under.rise, gap.controls, self.statistics)
         return shut_lips(np.where(np.isnan(gap.known), made, gap.known), gap)
 
 
