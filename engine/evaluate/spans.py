@@ -11,7 +11,7 @@ from scipy.linalg import solveh_banded
 from engine.corpus import Piece
 from engine.inpaint.gap import Gap
 from engine.inpaint.seams import land
-from engine.take import Array
+from engine.take import SHAPES, Array
 
 Method = Callable[[Gap], Array]
 SMOOTHING = 0.1  # lambda of the smoothing spline; of 1e-3 ... 100 the best MAE up to 0.5 s on validation takes
@@ -116,16 +116,18 @@ class Nearest:
     Parameters
     ----------
     pieces : training pieces to copy from
+    spread : (52,), optional; distances are in units of its root
     """
 
-    def __init__(self, pieces: Sequence[Piece]) -> None:
+    def __init__(self, pieces: Sequence[Piece], spread: Array | None = None) -> None:
+        self._unit = np.ones(len(SHAPES)) if spread is None else np.sqrt(spread)
         self._pieces = [np.asarray(piece.weights) for piece in pieces if piece.whole_face]
         self._mouths = [np.asarray(piece.weights) for piece in pieces]
 
     @classmethod
-    def own(cls, rest: Sequence[Array]) -> Nearest:
+    def own(cls, rest: Sequence[Array], spread: Array) -> Nearest:
         """Copy from the rest of the very take that has the hole."""
-        return cls([Piece(weights, True, "") for weights in rest])
+        return cls([Piece(weights, True, "") for weights in rest], spread)
 
     def __call__(self, gap: Gap) -> Array:
         """Return the filled weights; straight lines where no recording is as long as the hole."""
@@ -136,7 +138,7 @@ class Nearest:
         pieces = self._pieces if shapes.all() else self._mouths
         best, segment = np.inf, None
         for piece in pieces:
-            costs = _costs(piece[:, shapes], wanted)
+            costs = _costs(piece[:, shapes] / self._unit[shapes], wanted / self._unit[shapes])
             if len(costs) and costs.min() < best:
                 best, start = float(costs.min()), int(costs.argmin())
                 segment = piece[start : start + last - first]

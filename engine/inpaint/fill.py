@@ -19,10 +19,11 @@ from engine.inpaint.seams import REACH_FRAMES, bridge, land
 from engine.models.resample import interpolate
 from engine.pose import Pose
 from engine.speech.visemes import Cue, classes_over, one_hot
-from engine.take import MODEL_FPS, SHAPES, Array, Take, runs
+from engine.take import MODEL_FPS, SHAPES, Array, Mask, Take, runs
 
 BRIDGE_S = 0.25  # up to here a smooth curve through the seams is closer to what was there than a performance
 _CONTEXT = 60  # model frames on either side that the network looks at
+_LENDING = 5400  # model frames on either side that may lend motion to a long span
 _SEAM = 2  # known frames on either side that fix value and slope
 _CLOSED_MM, _HOLD = 1.5, 0.25  # where lips or lids meet in the fill, landing on the seams must not part them
 
@@ -82,8 +83,18 @@ def fill(
     return refill(take, request, seeds=range(seed, seed + variants), filler=filler)
 
 
-def refill(take: Take, request: Request, *, seeds: Sequence[int] = (0,), filler: Filler | None = None) -> list[Fill]:
-    """Fill a span as `request` says, once per seed; raises `EditError` as `fill` does."""
+def refill(
+    take: Take,
+    request: Request,
+    *,
+    seeds: Sequence[int] = (0,),
+    filler: Filler | None = None,
+    besides: Sequence[tuple[int, int]] = (),
+) -> list[Fill]:
+    """Fill a span as `request` says, once per seed; raises `EditError` as `fill` does.
+
+    `besides` are further spans that are to be made, and lend no motion to this one.
+    """
     if not len(seeds):
         raise EditError("At least one variant must be asked for.")
     request = checked(request, take)
@@ -93,6 +104,7 @@ def refill(take: Take, request: Request, *, seeds: Sequence[int] = (0,), filler:
     if style == "bridge":
         made = np.repeat(bridge(gap.known)[None], len(seeds), axis=0)
     else:
+        gap = gap if gap.guided.any() else replace(gap, rest=_rest(take, [request.frames, *besides]))
         made = (filler or bundled()).fill(gap, seeds=seeds)
     return [
         Fill(_placed(take, request, motion, window), request.frames, seed, style, request)
@@ -114,7 +126,8 @@ def fill_spans(take: Take, spans: Sequence[tuple[int, int]], request: Request, *
         raise EditError(f"The pin at frame {stray[0]} lies outside the span.", "Pins steer frames of the span.")
     for start, stop in ordered:
         inside = {frame: pose for frame, pose in request.pins.items() if start <= frame < stop}
-        take = refill(take, replace(request, frames=(start, stop), pins=inside), seeds=(seed,))[0].take
+        part = replace(request, frames=(start, stop), pins=inside)
+        take = refill(take, part, seeds=(seed,), besides=ordered)[0].take
     return take
 
 
@@ -179,6 +192,20 @@ def _gap(take: Take, request: Request, window: _Window) -> Gap:
     moved = [Cue(cue.start_s - shift, cue.stop_s - shift, cue.label) for cue in request.visemes]
     classes = np.where(inside, classes_over(moved, frames=window.frames, fps=MODEL_FPS), -1)
     return gap_of(known, guide=guide, visemes=one_hot(classes), controls=_controls(request, window, inside))
+
+
+def _rest(take: Take, spans: Sequence[tuple[int, int]]) -> list[Array]:
+    """Return what is known of a take around the first of the spans and outside all of them, at the model rate."""
+    pace = take.fps / MODEL_FPS
+    known: Mask = ~take.lost
+    for start, stop in spans:
+        known[start:stop] = False
+    reach = round(_LENDING * pace)
+    known[: max(0, spans[0][0] - reach)] = known[spans[0][1] + reach :] = False
+    steps = [(start, np.arange(0.0, stop - 1 - start, pace)) for start, stop in runs(known)]
+    if pace == 1:
+        return [take.weights[start : start + len(at)] for start, at in steps]
+    return [interpolate(take.weights, start + at) for start, at in steps]
 
 
 def _controls(request: Request, window: _Window, inside: np.ndarray) -> Array:

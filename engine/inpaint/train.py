@@ -51,6 +51,7 @@ def make_batches(
     statistics: Statistics,
     settings: Settings,
     rng: np.random.Generator,
+    *,
     size: int,
     ranks: Sequence[int | None] = (None,),
 ) -> list[Batch]:
@@ -108,7 +109,7 @@ class Trainer:
         self._pace(part)
         size = settings.batch // 2 if against else settings.batch
         ranks = rng.choice(LENDERS, 2, replace=False).tolist() if against else (None,)
-        batches = make_batches(self._material, self.statistics, settings, rng, size, ranks)
+        batches = make_batches(self._material, self.statistics, settings, rng, size=size, ranks=ranks)
         made = self._generate(batches, rng)
         if against:
             terms = self._against(batches[0], *made)

@@ -99,7 +99,7 @@ def test_the_ground_keeps_what_is_known_and_features_are_finite(material: list[P
 
 def test_losses_equal_a_plain_sum_over_the_hole(material: list[Performance]) -> None:
     statistics = statistics_of(material[0].weights)
-    batch = make_batches(material, statistics, SMALL, np.random.default_rng(0), 2)[0]
+    batch = make_batches(material, statistics, SMALL, np.random.default_rng(0), size=2)[0]
     terms = fill_losses(batch.base, batch, training.six_distances(), Shares(far=1.0, values=1.0, squares=1.0))
     for index in range(2):
         off = (batch.base[index] - batch.truth[index])[batch.hole[index].bool()]
@@ -122,7 +122,7 @@ def test_scatter_is_least_for_fills_drawn_as_the_truth_is() -> None:
 
 
 def test_scatter_asks_nothing_where_the_pose_is_settled(material: list[Performance]) -> None:
-    batch = make_batches(material, statistics_of(material[0].weights), SMALL, np.random.default_rng(0), 2)[0]
+    batch = make_batches(material, statistics_of(material[0].weights), SMALL, np.random.default_rng(0), size=2)[0]
     settled = replace(batch, certainty=torch.ones_like(batch.certainty))
     assert not scatter(settled.base, settled.base + 0.1, settled).any()
 
