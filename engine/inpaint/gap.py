@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from engine.controls import CONTROLS, bundled_measurer
 from engine.inpaint.expected import bundled as bundled_expected
 from engine.inpaint.lend import lent, trust
-from engine.inpaint.seams import REACH_FRAMES, bridge, distance_frames, smoothed
+from engine.inpaint.seams import REACH_FRAMES, bridge, distance_frames, room_frames, smoothed
 from engine.speech.visemes import NAMES
 from engine.take import SHAPES, Array, Mask
 
@@ -24,6 +24,7 @@ GUIDE_FRAMES = 1.6  # how far from known frames a guide begins to tell more than
 # What a guide is believed against: so many times its jitter, such a share of its level for a wrong gain, and so little.
 JITTER, GAIN, LEAST = 1.25, 0.2, 0.005
 _FULL = 1.2  # of the filter's answer; so much is lost to smoothing
+ROOM_FRAMES = 2.0  # between seams nearer than this a face has no time to go where a guide leads; of 1 ... 4 likewise
 _AROUND = 4.0  # frames over which jitter and level of a guide are measured
 _NEAR_FRAMES = 8.0  # scale on which nearness to known frames is shown to the network
 _SETTLED_FRAMES = 12.0  # how far from known frames motion is still largely settled by them
@@ -176,11 +177,12 @@ def _along_guide(gap: Gap, distance: Array, statistics: Statistics) -> Array:
     guide = np.where(told, gap.guide, plain)
     share = distance**2 / (distance**2 + GUIDE_FRAMES**2)
     away = share * smoothed(guide - plain, GUIDE_SMOOTHING)
-    return plain + _belief(away, guide, told) * away
+    room = room_frames(gap.known)
+    return plain + _belief(away * room / (room + ROOM_FRAMES), guide, told) * away
 
 
 def _belief(away: Array, guide: Array, told: Mask) -> Array:
-    """Return how far a guide is followed, (frames, 52) in 0..1, where it would lead `away` from the plain curve.
+    """Return how far a guide is followed, (frames, 52) in 0..1, where it may lead `away` from the plain curve.
 
     Wiener's filter with powers measured around each frame: what exceeds the guide's jitter and what a wrong gain would
     do is believed. Followed everywhere alike, still shapes shook, which cost a third of the error.
