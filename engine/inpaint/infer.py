@@ -12,7 +12,7 @@ import torch
 from scipy.ndimage import gaussian_filter1d
 
 from engine.inpaint.closures import shut_lips
-from engine.inpaint.gap import Gap, Ground, Statistics, bent, ground, left_open, resting, unsteered
+from engine.inpaint.gap import Gap, Ground, Statistics, bent, ground, left_open, resting, substantial, unsteered
 from engine.inpaint.lend import LENDERS
 from engine.inpaint.network import Generator, GeneratorConfig, noise_curves
 from engine.models.checkpoint import MODELS, load_model, save_model
@@ -54,7 +54,8 @@ class Filler:
         drawn = np.stack([noise_curves(len(gap.known), np.random.default_rng(seed)) for seed in seeds])
         features = torch.from_numpy(np.stack([one.features for one in unders]))
         noise = torch.from_numpy(np.float32(loud[..., None]) * drawn)
-        motions = self._motions(features, noise) + self._life(gap, unders[0], drawn)
+        motions = np.stack([substantial(motion, gap) for motion in self._motions(features, noise)])
+        motions += self._life(gap, unders[0], drawn)
         return np.stack([self._landed(gap, under, motion) for under, motion in zip(unders, motions, strict=True)])
 
     def _motions(self, features: torch.Tensor, noise: torch.Tensor) -> Array:
