@@ -64,12 +64,15 @@ class Filler:
 
     def _life(self, gap: Gap, under: Ground, drawn: Array) -> Array:
         """Return quick motion that asked controls leave open, (seeds, frames, 52); nothing where none is asked."""
-        if not np.isfinite(gap.controls).any():
-            return np.zeros((len(drawn), *gap.known.shape))
-        features = torch.from_numpy(unsteered(gap, under.base, self.statistics))[None].expand(len(drawn), -1, -1)
-        motions = self._motions(features, torch.from_numpy(drawn))
-        quick = motions - gaussian_filter1d(motions, QUICK_FRAMES, axis=1, mode="nearest")
-        return np.asarray(left_open(gap, self.statistics) * quick)
+        motions = np.zeros((len(drawn), *gap.known.shape))
+        told = np.flatnonzero(np.isfinite(gap.controls).any(axis=1))
+        if not len(told):
+            return motions
+        rows = slice(told[0], told[-1] + 1)  # beside seams none of it is let in, so none is made there
+        features = torch.from_numpy(unsteered(gap, under.base, self.statistics)[rows])
+        made = self._motions(features[None].expand(len(drawn), -1, -1), torch.from_numpy(drawn[:, rows]))
+        motions[:, rows] = made - gaussian_filter1d(made, QUICK_FRAMES, axis=1, mode="nearest")
+        return np.asarray(left_open(gap, self.statistics) * motions)
 
     def _grounds(self, gap: Gap, seeds: Sequence[int]) -> list[Ground]:
         """Return what is under each fill: seeds differ in the stretch of the take that lends its motion."""
