@@ -213,7 +213,8 @@ def _as_expected(base: Array, gap: Gap) -> Array:
     around = np.where(asked.any(axis=0), bundled_measurer().measure(base), np.nan)
     face = bundled_expected().face(np.where(hole[:, None], gap.controls, around))
     carry = np.full(len(base), 1 / (REACH_FRAMES * CARRY_FRAMES) ** 2)
-    told = smoothed((asked.any(axis=1) | ~hole).astype(np.float64)[:, None], _EASING)
+    rows = np.flatnonzero(hole)
+    told = smoothed(np.interp(np.arange(len(base)), rows, asked[rows].any(axis=1))[:, None], _EASING)
     return base + told * (face + bridge(gap.known - face, hold=carry) - base)
 
 
