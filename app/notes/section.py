@@ -8,9 +8,9 @@ from datetime import UTC, datetime
 
 from PySide6.QtWidgets import QLineEdit, QPushButton, QSizePolicy, QVBoxLayout
 
-from app.commands import MarkCommand
-from app.section import Section
 from app.session import Change, Session
+from app.session.commands import MarkCommand
+from app.widgets.section import Section
 from engine.project import Note
 from engine.take import timecode
 

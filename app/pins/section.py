@@ -9,10 +9,10 @@ import numpy as np
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QLineEdit, QPushButton, QSlider, QSpinBox
 
-from app.inference import Inference
-from app.section import Section, quiet
 from app.session import Change, Session
-from app.weight_sliders import WeightSliders
+from app.session.inference import Inference
+from app.widgets.section import Section, quiet
+from app.widgets.weight_sliders import WeightSliders
 from engine.project import Pin
 
 if TYPE_CHECKING:

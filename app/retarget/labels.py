@@ -7,9 +7,9 @@ from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
 from app.retarget.labelling import Labelling
 from app.retarget.retargeting import Retargeting
-from app.section import quiet
 from app.session import Session
-from app.weight_sliders import WeightSliders
+from app.widgets.section import quiet
+from app.widgets.weight_sliders import WeightSliders
 from engine.take import timecode
 
 SHOWN = 10

@@ -11,7 +11,6 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.commands import EditCommand
 from app.retarget.carry import (
     Carried,
     Carrier,
@@ -24,6 +23,7 @@ from app.retarget.carry import (
 )
 from app.retarget.commands import TargetCommand
 from app.session import Change, Session
+from app.session.commands import EditCommand
 from engine.character import Character, bundled
 from engine.formats import markers
 from engine.spacetime.layout import MARKERS

@@ -9,8 +9,8 @@ from app.retarget.labelling import Labelling
 from app.retarget.labels import LabelsBox
 from app.retarget.retargeting import LABELS, MOVEMENT, Retargeting
 from app.retarget.strengths import StrengthSliders
-from app.section import Section, quiet
 from app.session import Session
+from app.widgets.section import Section, quiet
 
 METHODS = {"Match the movement": MOVEMENT, "From a few labels": LABELS}
 

@@ -17,11 +17,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.commands import MarkCommand
-from app.section import Section, quiet
 from app.session import Change, Session
+from app.session.commands import MarkCommand
 from app.spans.filling import Filling
 from app.spans.strip import Strip
+from app.widgets.section import Section, quiet
 from engine.errors import EngineError
 from engine.formats import read_take
 from engine.project import Span

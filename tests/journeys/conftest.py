@@ -7,8 +7,8 @@ import pytest
 from PySide6.QtWidgets import QMessageBox
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
 from app.settings import Settings
+from app.window.main_window import MainWindow
 from engine.formats import read_take
 from engine.performance import demo
 

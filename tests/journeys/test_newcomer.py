@@ -10,10 +10,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog, QToolButton
 from pytestqt.qtbot import QtBot
 
-from app.actions import ACTIONS, keys_of
-from app.hints import BETWEEN
-from app.main_window import MainWindow
-from app.page import Page
+from app.actions.table import ACTIONS, keys_of
+from app.dialogs.page import Page
+from app.widgets.hints import BETWEEN
+from app.window.main_window import MainWindow
 from engine.performance import demo
 from tests.journeys.conftest import load, settled
 from tests.journeys.test_non_expert import LIPS, drag

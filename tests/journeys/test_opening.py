@@ -13,7 +13,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 from engine.formats import read_take, write_take
 from engine.performance import demo
 from engine.project import Project
@@ -44,7 +44,7 @@ class SlowDisk:
 @pytest.fixture
 def disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowDisk]:
     slow = SlowDisk()
-    monkeypatch.setattr("app.opening.read_take", slow)
+    monkeypatch.setattr("app.session.opening.read_take", slow)
     yield slow
     slow.go_on.set()
 

@@ -11,8 +11,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
-from app.main_window import MainWindow
+from app.session.curve_table import CURVES, FIRST_WEIGHT, weights_under
+from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
 from engine.performance import demo
 from engine.take import SHAPE_INDEX

@@ -12,8 +12,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
 from app.preview.picking import places
+from app.window.main_window import MainWindow
 from engine.character import bundled, save
 from engine.formats import read_take
 from engine.performance import demo

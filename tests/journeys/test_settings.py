@@ -12,13 +12,13 @@ from PySide6.QtWidgets import QApplication, QComboBox
 from pytestqt.qtbot import QtBot
 
 from app import theme
-from app.bench_playback import NullSink
-from app.main_window import MainWindow
-from app.page import Page
+from app.bench.playback import NullSink
+from app.dialogs.page import Page
+from app.dialogs.settings import SettingsDialog
 from app.playback import device
 from app.playback.clock import AudioClock
 from app.settings import Settings, log_path
-from app.settings_dialog import SettingsDialog
+from app.window.main_window import MainWindow
 from engine.formats.audio import Audio
 
 CONTROL = Qt.KeyboardModifier.ControlModifier

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 
-from app.curve_table import CURVES
+from app.session.curve_table import CURVES
 from engine.take import Array
 
 if TYPE_CHECKING:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 
-from app.curve_table import CURVES
 from app.curves.brush import pulled, reach
 from app.curves.tools.base import FINE, Tool
+from app.session.curve_table import CURVES
 
 
 class DragTool(Tool):

@@ -9,11 +9,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QPushButton
 from pytestqt.qtbot import QtBot
 
-from app.commands import restored
 from app.retarget.actions import RetargetActions
 from app.retarget.carry import Carried
 from app.retarget.sides import sides
 from app.retarget.strengths import STEPS, position, strength_at
+from app.session.commands import restored
 from engine.character import Character, bundled
 from engine.controls import bundled_measurer
 from engine.formats.markers import Markers, write
