@@ -18,7 +18,7 @@ from engine.formats import read_take, write_take
 from engine.performance import demo
 from engine.project import Project
 from engine.take import Take
-from tests.journeys.conftest import load, settled
+from tests.journeys.conftest import load, noted, saved_as, settled
 
 
 class SlowDisk:
@@ -127,16 +127,12 @@ def test_a_project_that_is_open_can_be_opened_again_and_stays_its_file(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.retake"
-    QTest.keyClicks(window.notes.entry, "one")
-    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
-    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
-        QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    noted(window, "one")
+    saved_as(qtbot, window, path, monkeypatch)
     load(qtbot, window, path)
     assert window.keeper.path == path and not window.session.edited and len(window.session.marks.notes) == 1
     with qtbot.waitSignal(window.keeper.kept, timeout=10_000):
-        QTest.keyClicks(window.notes.entry, "two")
-        QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
+        noted(window, "two")
     window.close()
     assert [note.text for note in Project.open(path).contents.marks.notes] == ["one", "two"]
 
@@ -145,11 +141,8 @@ def test_a_project_that_cannot_be_read_again_leaves_its_work_kept_elsewhere(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.retake"
-    QTest.keyClicks(window.notes.entry, "one")
-    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
-    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
-        QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    noted(window, "one")
+    saved_as(qtbot, window, path, monkeypatch)
     release = window.keeper.release
 
     def damaged() -> None:

@@ -20,6 +20,7 @@ from app.playback.clock import AudioClock
 from app.settings import Settings, log_path
 from app.window.main_window import MainWindow
 from engine.formats.audio import Audio
+from tests.journeys.conftest import noted
 
 CONTROL = Qt.KeyboardModifier.ControlModifier
 
@@ -56,8 +57,7 @@ def test_each_setting_applies_at_once_and_is_kept(
     dialog.author.selectAll()
     QTest.keyClicks(dialog.author, "Ana")
     QTest.keyClick(dialog.author, Qt.Key.Key_Return)
-    QTest.keyClicks(window.notes.entry, "softer")
-    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
+    noted(window, "softer")
     assert window.session.marks.notes[0].author == "Ana"
     window.settings.remember(tmp_path / "a.csv")
     dialog.refresh()

@@ -16,7 +16,7 @@ from engine.formats import livelink
 from engine.performance import demo
 from engine.project import Contents, Project
 from engine.take import SHAPES, Take
-from tests.engine.projects import reopened, sample, sql, stored
+from tests.engine.project.projects import reopened, sample, sql, stored
 
 
 @pytest.fixture(scope="module")
