@@ -10,7 +10,8 @@ from scipy.spatial import cKDTree
 from app import cli
 from engine.character import BUNDLED, bundled, load
 from engine.formats import read_take
-from engine.formats.characters.animation import MovingMesh, write
+from engine.formats.characters.animation import write
+from engine.formats.characters.moving import MovingMesh
 from engine.performance import demo
 from engine.spacetime.layout import standard
 
