@@ -1,12 +1,17 @@
-"""Keys that no action can have: one that counts for as long as it is held, and Enter where something is typed."""
+"""Keys that no action can have: one that counts for as long as it is held, and those of whatever is typed into."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QApplication, QLineEdit, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QApplication, QLineEdit, QWidget
 
 from app.preview.panel import PreviewPanel
+
+# Editors claim letters, digits and what moves the cursor by themselves; these they would lose to shortcuts.
+ENTERS = frozenset({Qt.Key.Key_Return, Qt.Key.Key_Enter})
+STEPS = frozenset({Qt.Key.Key_Up, Qt.Key.Key_Down, Qt.Key.Key_PageUp, Qt.Key.Key_PageDown})
+COMMANDS = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
 
 
 class Keyboard(QObject):
@@ -33,13 +38,13 @@ class Keyboard(QObject):
             application.removeEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Show the original for as long as B is held; leave Enter to whatever is typed into."""
+        """Show the original for as long as B is held; leave its keys to whatever is typed into."""
         if not isinstance(event, QKeyEvent):
             return False
         kind = event.type()
-        if kind == QEvent.Type.ShortcutOverride and isinstance(watched, QLineEdit):
-            typed = event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
-            event.setAccepted(typed)  # or the shortcut that keeps a fill would take it
+        if kind == QEvent.Type.ShortcutOverride and isinstance(watched, (QLineEdit, QAbstractSpinBox)):
+            typed = event.key() in ENTERS or (event.key() in STEPS and not event.modifiers() & COMMANDS)
+            event.setAccepted(typed)
             return typed
         if kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
             plain = event.key() == Qt.Key.Key_B and event.modifiers() == Qt.KeyboardModifier.NoModifier

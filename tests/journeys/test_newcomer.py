@@ -63,6 +63,8 @@ def test_the_only_span_is_filled_without_choosing_it_and_enter_in_an_entry_keeps
     window.notes.entry.setFocus()
     noted(window, "lost here")
     assert [note.text for note in session.marks.notes] == ["lost here"]
+    window.brush.radius.setFocus()
+    QTest.keyClick(window.brush.radius, Qt.Key.Key_Return)
     assert window.filling.variants and session.take.weights is session.original.weights
     window.curves.setFocus()
     QTest.keyClick(window.curves, Qt.Key.Key_Return)
