@@ -164,10 +164,14 @@ def posed(weights: Array, pose: Pose) -> Array:
 
 
 def opened(path: Path | None) -> Target:
-    """Return a head with its 54 markers placed; with none where it lacks the landmarks for them."""
+    """Return the head in a file, or the bundled one, with its markers placed."""
     from engine.formats.characters.opening import character_of
 
-    head = bundled() if path is None else replace(character_of(path), name=path.stem)
+    return placed(bundled() if path is None else replace(character_of(path), name=path.stem), path)
+
+
+def placed(head: Character, path: Path | None) -> Target:
+    """Return a head with its 54 markers placed; with none where it lacks the landmarks for them."""
     try:
         layout = standard(head)
     except EditError:

@@ -19,6 +19,7 @@ from app.retarget.carry import (
     Stopped,
     Target,
     opened,
+    placed,
     posed,
 )
 from app.retarget.commands import TargetCommand
@@ -96,6 +97,7 @@ class Retargeting(QObject):
             thread.done.connect(self._deliver)
             thread.failed.connect(self._refused)
         self.progress.connect(self._advance)
+        self._offered: Character | None = None
         self._heads: dict[str, Character | None] = {"": None}  # by path; the bundled one has none
         session.changed.connect(self._on_change)
         session.undo.indexChanged.connect(self._follow)
@@ -169,6 +171,17 @@ class Retargeting(QObject):
         """Carry to the head in a file or folder; None is the bundled one."""
         name = path.name if path else bundled().name
         self._open(name, lambda: opened(path), lambda target: self.change_target(target, f"carry to {name}"))
+
+    def offer_target(self, head: Character | None, path: Path | None) -> None:
+        """Carry to the head that the take is shown on, where the user chose no other; None takes the offer back."""
+        self.submit(lambda: placed(head, path) if head is not None else Target(), self._take_offer)
+
+    def _take_offer(self, offer: Target) -> None:
+        target = self.target
+        touched = target.head is not self._offered or target.labels or target.by_hand or self.result is not None
+        if target.head is None or not touched:
+            self._offered = offer.head
+            self._put(offer)
 
     def _open(self, name: str, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
         self.cancel()

@@ -215,6 +215,7 @@ class MainWindow(QMainWindow):
         self.edits.stop_else = self.retarget.retargeting.cancel
         self.files.capture_dropped.connect(self.retarget.take_in)
         self.files.character_chosen.connect(self.preview.show_character)
+        self.files.character_chosen.connect(self.retarget.retargeting.offer_target)
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
         self.timeline.visemes.wanted.connect(self._do)
