@@ -40,6 +40,8 @@ class PinsSection(Section):
         self._pose: dict[str, float] = {}  # the weights that were moved
         self._solver: PinSolver | None = None
         self._solver_for: tuple[object, ...] = ()
+        self.hint = quiet("Move a slider: the pose is met at the playhead and eases out over the range.")
+        self.column.addWidget(self.hint)
         self.before, self.after = QSpinBox(), QSpinBox()
         for box in (self.before, self.after):
             box.setRange(0, 5000)
@@ -57,8 +59,6 @@ class PinsSection(Section):
         self.side_by_side(self.keep_button, self.drop_button)
         self.keep_button.clicked.connect(self.keep)
         self.drop_button.clicked.connect(self.drop)
-        self._hint = quiet("Move a slider: the pose is met at the playhead and eases out over the range.")
-        self.column.addWidget(self._hint)
         session.changed.connect(self._on_change)
         self._reset_range()
         self._show_sliders()

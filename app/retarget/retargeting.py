@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,17 +12,7 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.retarget.carry import (
-    Carried,
-    Carrier,
-    Carry,
-    Performance,
-    Stopped,
-    Target,
-    opened,
-    placed,
-    posed,
-)
+from app.retarget.carry import Carried, Carrier, Carry, Performance, Pose, Stopped, Target, opened, placed, posed
 from app.retarget.commands import TargetCommand
 from app.session import Change, Session
 from app.session.commands import EditCommand
@@ -167,10 +158,11 @@ class Retargeting(QObject):
         if self._capture_path is not None:
             self.open_markers(self._capture_path, frame)
 
-    def choose_target(self, path: Path | None) -> None:
-        """Carry to the head in a file or folder; None is the bundled one."""
+    def choose_target(self, path: Path | None, labels: Mapping[int, Pose] | None = None) -> None:
+        """Carry to the head in a file or folder, with labels that are known for it; None is the bundled one."""
         name = path.name if path else bundled().name
-        self._open(name, lambda: opened(path), lambda target: self.change_target(target, f"carry to {name}"))
+        labelled = partial(replace, labels=labels or {})
+        self._open(name, lambda: opened(path), lambda target: self.change_target(labelled(target), f"carry to {name}"))
 
     def offer_target(self, head: Character | None, path: Path | None) -> None:
         """Carry to the head that the take is shown on, where the user chose no other; None takes the offer back."""

@@ -32,6 +32,8 @@ def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtB
     session = window.session
     session.move_playhead(80)
     QTest.keyClick(window, Qt.Key.Key_K)
+    settled(qtbot, window)
+    assert "Move a slider" in window.pins.hint.text() and window.pins.hint.y() < window.pins.before.y()  # read first
     QTest.keyClicks(window.pins.search, "smile")
     for name in ("mouthSmileLeft", "mouthSmileRight"):
         press(window.pins.sliders[name], Qt.Key.Key_Home)

@@ -87,6 +87,19 @@ def test_mistakes_get_one_sentence(
     assert not (tmp_path / "out.npz").exists()
 
 
+def test_a_mesh_of_few_vertices_is_driven_by_few_points_and_told_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mesh, points, out = tmp_path / "few.obj", tmp_path / "points.csv", tmp_path / "out.npz"
+    mesh.write_text("v 0 0 0\nv 90 0 0\nv 0 90 0\nv 0 0 90\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n")
+    drive = ["drive", str(demo.BUNDLED), "--mesh", str(mesh), "-o", str(out)]
+    assert cli.run(drive) == 2
+    told = capsys.readouterr().err
+    assert "is a feature point twice." in told and "fewer points in a marker,vertex file" in told
+    points.write_text("marker,vertex\nforehead,2\nnose_tip,3\nchin,0\ncheek_left,1\n")
+    assert cli.run([*drive, "--points", str(points)]) == 0 and np.load(out)["vertices"].shape == (322, 4, 3)
+
+
 def test_a_moving_mesh_of_another_program_is_a_character_too(tmp_path: Path) -> None:
     head = bundled()
     frames = np.stack([head.neutral, head.vertices(np.full(52, 0.5))])
