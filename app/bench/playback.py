@@ -8,7 +8,6 @@ import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,9 +15,6 @@ from app.playback.clock import Pull
 from app.playback.device import LATENCY_S
 from app.preview.worker import Wanted
 from engine.speed import Speed, performance_of
-
-if TYPE_CHECKING:
-    from PySide6.QtCore import QEventLoop
 
 PLAYED_S = 30.0
 RATE, BLOCK = 48_000, 512
@@ -126,21 +122,14 @@ def playback_job(seconds: float = PLAYED_S) -> list[Speed]:
 
 def saving_job() -> list[Speed]:
     """Save an hour at 60 fps, then a copy of it, and measure the longest the window did not answer meanwhile."""
-    from PySide6.QtCore import QEventLoop, QTimer
     from PySide6.QtWidgets import QApplication
 
     application = QApplication.instance() or QApplication(["retake"])
     with tempfile.TemporaryDirectory() as folder:
         window = _window(performance_of(3600.0, 60.0), Path(folder))
-        loop = QEventLoop()
-        QTimer.singleShot(SETTLED_MS, loop.quit)  # what opening sets off is no part of saving
-        loop.exec()
-        window.keeper.saved.connect(loop.quit)
-        window.keeper.failed.connect(loop.quit)
         paths = [Path(folder) / f"{name}.retake" for name in ("hour", "copy")]
-        stall_ms, spent_s = _stall(loop, [partial(window.keeper.save_as, path) for path in paths])
-        application.processEvents()
-        window.close()
+        steps = [partial(window.keeper.save_as, path) for path in paths]
+        stall_ms, spent_s = _stall(application, window, steps, (window.keeper.saved, window.keeper.failed))
     return [
         Speed("save_60min_window_stall_ms_worst", stall_ms, "ms", 50.0),
         Speed("save_60min_twice_s", spent_s, "s", 15.0),
@@ -149,7 +138,6 @@ def saving_job() -> list[Speed]:
 
 def opening_job() -> list[Speed]:
     """Open an hour at 60 fps from its CSV, and measure the longest the window did not answer until it was shown."""
-    from PySide6.QtCore import QEventLoop, QTimer
     from PySide6.QtWidgets import QApplication
 
     from engine.formats import read_take, write_take
@@ -160,24 +148,26 @@ def opening_job() -> list[Speed]:
         path = Path(folder) / "hour.csv"
         write_take(performance_of(3600.0, 60.0), path)
         window = _window(read_take(demo.BUNDLED), Path(folder))
-        loop = QEventLoop()
-        QTimer.singleShot(SETTLED_MS, loop.quit)
-        loop.exec()
-        window.files.opened.connect(loop.quit)
-        window.files.told.connect(loop.quit)
-        stall_ms, spent_s = _stall(loop, [partial(window.load, path)])
-        application.processEvents()
-        window.close()
+        ends = (window.files.opened, window.files.told)
+        stall_ms, spent_s = _stall(application, window, [partial(window.load, path)], ends)
     return [
         Speed("open_60min_window_stall_ms_worst", stall_ms, "ms", 50.0),
         Speed("open_60min_s", spent_s, "s", 4.0),
     ]
 
 
-def _stall(loop: QEventLoop, steps: Sequence[Callable[[], None]]) -> tuple[float, float]:
-    """Do steps, each until it ends the loop; returns the longest wait for an answer in ms, and how long all took in s."""
-    from PySide6.QtCore import QTimer
+def _stall(application, window, steps: Sequence[Callable[[], None]], ends) -> tuple[float, float]:  # type: ignore[no-untyped-def]
+    """Do steps in a window, each until one of the signals `ends` it, and close it.
 
+    Returns the longest wait for an answer in ms, and how long all took in s.
+    """
+    from PySide6.QtCore import QEventLoop, QTimer
+
+    loop = QEventLoop()
+    QTimer.singleShot(SETTLED_MS, loop.quit)  # what opening the window sets off is no part of it
+    loop.exec()
+    for end in ends:
+        end.connect(loop.quit)
     beats = [time.perf_counter()]
     beat = QTimer(interval=BEAT_MS)
     beat.timeout.connect(lambda: beats.append(time.perf_counter()))
@@ -189,6 +179,8 @@ def _stall(loop: QEventLoop, steps: Sequence[Callable[[], None]]) -> tuple[float
     ended = time.perf_counter()
     loop.exec()
     beat.stop()
+    application.processEvents()
+    window.close()
     return 1e3 * float(np.diff(beats).max()), ended - beats[0]
 
 

@@ -31,14 +31,19 @@ class Page(QDialog):
         self.text.setTextInteractionFlags(
             Qt.TextInteractionFlag.TextSelectableByMouse
         )  # versions and paths are for copying
-        close = QPushButton("Close")
-        close.setProperty("primary", True)
-        close.clicked.connect(self.close)
         column = QVBoxLayout(self)
         column.setContentsMargins(3 * GRID, 2 * GRID, 3 * GRID, 2 * GRID)
         column.setSpacing(2 * GRID)
         column.addWidget(self.text)
-        column.addWidget(close, alignment=Qt.AlignmentFlag.AlignRight)
+        column.addWidget(closing(self), alignment=Qt.AlignmentFlag.AlignRight)
+
+
+def closing(dialog: QDialog) -> QPushButton:
+    """Return the button that closes a dialog."""
+    button = QPushButton("Close")
+    button.setProperty("primary", True)
+    button.clicked.connect(dialog.close)
+    return button
 
 
 def in_columns(groups: Mapping[str, Sequence[tuple[str, str]]]) -> str:

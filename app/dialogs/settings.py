@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.background import LatestWins
+from app.dialogs.page import closing
 from app.playback import device
 from app.playback.media import Media
 from app.settings import PRESETS, Settings
@@ -92,14 +93,11 @@ class SettingsDialog(QDialog):
         row.addWidget(self.recent, 1)
         row.addWidget(self.clear)
         grid.addLayout(row, at + 1, 0, 1, 2)
-        close = QPushButton("Close")
-        close.setProperty("primary", True)
-        close.clicked.connect(self.close)
         column = QVBoxLayout(self)
         column.setContentsMargins(3 * GRID, 2 * GRID, 3 * GRID, 2 * GRID)
         column.addLayout(grid)
         column.addSpacing(GRID)
-        column.addWidget(close, alignment=Qt.AlignmentFlag.AlignRight)
+        column.addWidget(closing(self), alignment=Qt.AlignmentFlag.AlignRight)
 
     def _connect(self) -> None:
         self.theme.textActivated.connect(lambda text: self._set("theme", THEMES[text]))

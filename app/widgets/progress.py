@@ -47,16 +47,15 @@ class Progress(QWidget):
         self._soon.timeout.connect(self.show)
         self.hide()
 
-    def begin(self) -> None:
-        """Show the bar, empty, if it does not end soon."""
+    def follow(self, under_way: bool) -> None:
+        """Show the bar, empty, for what is under way if it does not end soon; put it away when it has ended."""
+        if not under_way:
+            self._soon.stop()
+            self.hide()
+            return
         self.bar.setValue(0)
         if not self.isVisible():
             self._soon.start()
-
-    def end(self) -> None:
-        """Put the bar away."""
-        self._soon.stop()
-        self.hide()
 
     def advance(self, share: float) -> None:
         """Show what share is done, 0 to 1."""

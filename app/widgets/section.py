@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QLabel, QLayout, QSlider, QVBoxLayout, QWidget
 
 from app.session import Session
 from app.theme import GRID
@@ -51,6 +51,14 @@ class Section(QWidget):
         for widget in widgets:
             row.addWidget(widget)
         self.column.addLayout(row)
+
+
+def empty(layout: QLayout) -> None:
+    """Take everything out of a layout; it is gone from the screen at once."""
+    while (item := layout.takeAt(0)) is not None:
+        if (old := item.widget()) is not None:
+            old.hide()
+            old.deleteLater()
 
 
 def heading(text: str) -> QLabel:

@@ -8,7 +8,7 @@ import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QLineEdit, QSlider, QVBoxLayout, QWidget
 
-from app.widgets.section import quiet, slider
+from app.widgets.section import empty, quiet, slider
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
 STEPS = 200
@@ -62,10 +62,7 @@ class WeightSliders(QWidget):
         return moved + [SHAPES[i] for i in np.argsort(-activity) if SHAPES[i] not in moved][: SHOWN - len(moved)]
 
     def _lay_out(self, names: list[str]) -> None:
-        while (item := self._grid.takeAt(0)) is not None:
-            if (old := item.widget()) is not None:
-                old.hide()
-                old.deleteLater()
+        empty(self._grid)
         self.sliders, self._values = {}, {}
         for row, name in enumerate(names):
             label, number, bar = quiet(name), QLabel(), slider(0, STEPS)

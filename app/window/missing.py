@@ -8,6 +8,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from app.theme import GRID
+from app.widgets.section import empty
 from engine.project import Found, name_of
 
 
@@ -28,10 +29,7 @@ class MissingMedia(QFrame):
 
     def show_missing(self, missing: dict[str, Found]) -> None:
         """Show a row for each file that is missing."""
-        while (item := self._column.takeAt(0)) is not None:
-            if (old := item.widget()) is not None:
-                old.hide()
-                old.deleteLater()
+        empty(self._column)
         for kind, found in missing.items():
             self._column.addWidget(self._row(kind, found))
         self.setVisible(bool(missing))

@@ -101,17 +101,11 @@ class StatusBar(QFrame):
         self["saved"].setText(" ".join(under_way) or told)
 
     def _show_saving(self) -> None:
-        if self._keeper.saving is not None:
-            self.saving.begin()
-        else:
-            self.saving.end()
+        self.saving.follow(self._keeper.saving is not None)
         self._show_saved()
 
     def _show_opening(self) -> None:
-        if self._opening.path is not None:
-            self.opening.begin()
-        else:
-            self.opening.end()
+        self.opening.follow(self._opening.path is not None)
         self._show_saved()
 
     def _show_sound(self) -> None:
