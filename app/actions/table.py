@@ -13,7 +13,7 @@ class Action:
 
     Attributes
     ----------
-    name : method that does it, of the window, its edit actions or its time actions
+    name : method that does it, of the window or of one of the `…Actions`
     title : in menus; with `short` on the toolbar
     menu : the menu it is in
     keys : shortcuts
