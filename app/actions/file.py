@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -38,7 +37,7 @@ class FileActions(QObject):
     told = Signal(str, str)  # sentence, advice
     opened = Signal()
     capture_dropped = Signal(object)  # the path of a file of markers
-    character_chosen = Signal(object, object)  # a Character and its Path, or None twice for the bundled one
+    character_chosen = Signal(object)  # the Path of a head, or None for the bundled one
     cues_dropped = Signal(object)  # the Path of a file that says what is said when
 
     def __init__(self, session: Session, keeper: Keeper, media: Media, settings: Settings, window: QWidget) -> None:
@@ -161,15 +160,9 @@ class FileActions(QObject):
 
     def load_character(self) -> None:
         """Choose a head to show the take on, and to carry it to by default; none goes back to the bundled one."""
-        from engine.formats.characters.opening import character_of
-
         kinds = "Heads (*.npz *.glb *.gltf *.obj)"
         name, _ = QFileDialog.getOpenFileName(self._window, "Show on another head", "", kinds)
-        path = Path(name) if name else None
-        try:
-            self.character_chosen.emit(replace(character_of(path), name=path.stem) if path else None, path)
-        except EngineError as error:
-            self.told.emit(error.sentence, error.advice)
+        self.character_chosen.emit(Path(name) if name else None)
 
     def when_safe(self, then: Callable[[], None], otherwise: Callable[[], None] = lambda: None) -> None:
         """Do what closes the open take: at once, or when its edits are saved, or never, as the user says."""

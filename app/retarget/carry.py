@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -96,6 +96,14 @@ class Carried:
         return np.asarray(self.take.weights[frame - self.start]) if inside else None
 
 
+@dataclass(frozen=True, eq=False)
+class Errand:
+    """Work for a background thread, and who gets what it returns."""
+
+    work: Callable[[], Any]
+    then: Callable[[Any], None]
+
+
 class Carrier:
     """Carries; remembers the markers of the last performance, for which a short range is asked again and again."""
 
@@ -164,14 +172,10 @@ def posed(weights: Array, pose: Pose) -> Array:
 
 
 def opened(path: Path | None) -> Target:
-    """Return the head in a file, or the bundled one, with its markers placed."""
+    """Return a head with its 54 markers placed; with none where it lacks the landmarks for them."""
     from engine.formats.characters.opening import character_of
 
-    return placed(bundled() if path is None else replace(character_of(path), name=path.stem), path)
-
-
-def placed(head: Character, path: Path | None) -> Target:
-    """Return a head with its 54 markers placed; with none where it lacks the landmarks for them."""
+    head = bundled() if path is None else replace(character_of(path), name=path.stem)
     try:
         layout = standard(head)
     except EditError:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.retarget.carry import Carried, Carrier, Carry, Performance, Pose, Stopped, Target, opened, placed, posed
+from app.retarget.carry import Carried, Carrier, Carry, Errand, Performance, Pose, Stopped, Target, opened, posed
 from app.retarget.commands import TargetCommand
 from app.session import Change, Session
 from app.session.commands import EditCommand
@@ -30,14 +30,6 @@ BEFORE_FRAMES, AFTER_FRAMES = 8, 24  # of the playhead, that are carried live: p
 AHEAD_FRAMES = 12  # how near the end of what is known the playhead may come before more is asked for
 MOVEMENT, LABELS = "movement", "labels"
 KIND = "retarget"  # of the edits that put a take on another head
-
-
-@dataclass(frozen=True, eq=False)
-class Errand:
-    """Work for a background thread, and who gets what it returns."""
-
-    work: Callable[[], Any]
-    then: Callable[[Any], None]
 
 
 class Retargeting(QObject):
@@ -65,6 +57,8 @@ class Retargeting(QObject):
     progress = Signal(float)
     failed = Signal(str, str)
     capture_opened = Signal(object)  # a Take of the capture's length
+    head_read = Signal(object)  # the head to show the take on, or None for the bundled one
+    told = Signal(str)  # what is being read, or nothing
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -86,7 +80,8 @@ class Retargeting(QObject):
         self._whole, self._short = (LatestWins(_run, name=name) for name in ("retarget", "retarget live"))
         for thread in (self._whole, self._short):
             thread.done.connect(self._deliver)
-            thread.failed.connect(self._refused)
+        self._whole.failed.connect(self._refused)
+        self._short.failed.connect(self._short_refused)
         self.progress.connect(self._advance)
         self._offered: Character | None = None
         self._heads: dict[str, Character | None] = {"": None}  # by path; the bundled one has none
@@ -164,11 +159,14 @@ class Retargeting(QObject):
         labelled = partial(replace, labels=labels or {})
         self._open(name, lambda: opened(path), lambda target: self.change_target(labelled(target), f"carry to {name}"))
 
-    def offer_target(self, head: Character | None, path: Path | None) -> None:
-        """Carry to the head that the take is shown on, where the user chose no other; None takes the offer back."""
-        self.submit(lambda: placed(head, path) if head is not None else Target(), self._take_offer)
+    def show_on(self, path: Path | None) -> None:
+        """Read a head to show the take on, None for the bundled one; it is the target where the user chose no other."""
+        self.told.emit(f"reading {path.name}…" if path else "")
+        self._short.submit(Errand(lambda: opened(path) if path else Target(), self._take_shown), "head")
 
-    def _take_offer(self, offer: Target) -> None:
+    def _take_shown(self, offer: Target) -> None:
+        self.told.emit("")
+        self.head_read.emit(offer.head)
         target = self.target
         touched = target.head is not self._offered or target.labels or target.by_hand or self.result is not None
         if target.head is None or not touched:
@@ -363,6 +361,10 @@ class Retargeting(QObject):
         self._solving, self.share, self.opening = None, None, ""
         self.failed.emit(sentence, advice)
         self.changed.emit()
+
+    def _short_refused(self, request: object, sentence: str, advice: str) -> None:
+        self.told.emit("")
+        self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:

@@ -214,8 +214,9 @@ class MainWindow(QMainWindow):
         self.preview.dot_clicked.connect(self.retarget.placing.choose)
         self.edits.stop_else = self.retarget.retargeting.cancel
         self.files.capture_dropped.connect(self.retarget.take_in)
-        self.files.character_chosen.connect(self.preview.show_character)
-        self.files.character_chosen.connect(self.retarget.retargeting.offer_target)
+        self.files.character_chosen.connect(self.retarget.retargeting.show_on)
+        self.retarget.retargeting.head_read.connect(self.preview.show_character)
+        self.retarget.retargeting.told.connect(self.status["notice"].setText)
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
         self.timeline.visemes.wanted.connect(self._do)

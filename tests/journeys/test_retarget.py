@@ -118,13 +118,18 @@ def test_a_take_is_carried_to_another_head_and_back(
 
 
 def test_the_head_a_take_is_shown_on_is_the_target_until_another_is_chosen(
-    qtbot: QtBot, window: MainWindow, broad_head: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, window: MainWindow, broad_head: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     retarget, steps = window.retarget.retargeting, window.session.undo.count()
-    chosen = [str(broad_head), "", str(broad_head), str(broad_head)]
+    chosen = [str(broad_head), "", str(broad_head), str(broad_head), str(tmp_path / "no.glb")]
+    (tmp_path / "no.glb").write_bytes(b"no head")
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (chosen.pop(0), ""))
     window.actions_by_name["load_character"].trigger()
+    assert (
+        window.status["notice"].text() == "reading broad.npz…" and window.preview._character is None
+    )  # beside the work
     retargeted(qtbot, window)
+    assert not window.status["notice"].text()
     QTest.keyClick(window, Qt.Key.Key_T)
     retargeted(qtbot, window)
     assert retarget.ready and window.session.undo.count() == steps and not window.session.edited
@@ -141,4 +146,10 @@ def test_the_head_a_take_is_shown_on_is_the_target_until_another_is_chosen(
     mine = retarget.target.head
     window.actions_by_name["load_character"].trigger()
     retargeted(qtbot, window)
-    assert window.preview._character is not mine and retarget.target.head is mine
+    shown = window.preview._character
+    assert shown is not None and shown is not mine and retarget.target.head is mine
+
+    window.actions_by_name["load_character"].trigger()
+    retargeted(qtbot, window)
+    assert "no.glb" in window.notices.text.text() and not window.status["notice"].text()
+    assert window.preview._character is shown and retarget.target.head is mine
