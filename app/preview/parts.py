@@ -11,7 +11,7 @@ from engine.take import Array
 Labels = npt.NDArray[np.int64]  # (vertices,) a number for each part
 Triangles = npt.NDArray[np.int32]  # (n, 3)
 FEWEST_OF_BALL = 50  # vertices
-EYE_RADII_MM, ROUND = (9.0, 16.0), 0.12  # about 12 mm; the cornea stands out by a tenth
+EYE_RADII_MM, ROUND, HALF = (9.0, 16.0), 0.12, 0.8  # about 12 mm; the cornea stands out by a tenth
 
 
 def part_of(character: Character) -> Labels:
@@ -55,4 +55,5 @@ def _is_eyeball(points: Array) -> bool:
     solved = np.linalg.lstsq(np.column_stack([2 * away, np.ones(len(away))]), (away**2).sum(axis=1))[0]
     radius = float(np.sqrt(max(solved[3] + solved[:3] @ solved[:3], 0.0)))
     off = np.abs(np.linalg.norm(away - solved[:3], axis=1) - radius).max()
-    return EYE_RADII_MM[0] <= radius <= EYE_RADII_MM[1] and bool(off < ROUND * radius)
+    deep = np.ptp(points, axis=0).min() > HALF * radius  # a row of lashes or teeth lies on a ball too
+    return EYE_RADII_MM[0] <= radius <= EYE_RADII_MM[1] and bool(deep and off < ROUND * radius)
