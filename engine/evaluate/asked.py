@@ -16,7 +16,7 @@ from engine.evaluate.motion import CLOSED_MM
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import bundled
 from engine.inpaint.regions import REGIONS
-from engine.inpaint.seams import bridge
+from engine.inpaint.seams import bridged
 from engine.speech.visemes import NAMES
 from engine.take import MODEL_FPS, SHAPE_INDEX, Array, Mask, runs
 
@@ -84,7 +84,7 @@ def masked(event: Event, steering: str) -> tuple[Gap, slice]:
 def table(data: Path | None, report: Callable[[str], None]) -> list[dict[str, Any]]:
     """Return the share of events that happen again, per kind, steering and method."""
     pieces = pieces_to_measure(data)
-    ways: dict[str, Method] = {"gan": lambda gap: bundled().fill(gap)[0], "bridge": lambda gap: bridge(gap.known)}
+    ways: dict[str, Method] = {"gan": lambda gap: bundled().fill(gap)[0], "bridge": lambda gap: bridged(gap.known)}
     rows = []
     for kind in LONGEST_S:
         found = events(pieces, kind)

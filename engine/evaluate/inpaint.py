@@ -19,7 +19,7 @@ from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler, bundled, load
 from engine.inpaint.material import roughened
 from engine.inpaint.regions import REGIONS
-from engine.inpaint.seams import bridge
+from engine.inpaint.seams import bridged
 from engine.models.checkpoint import MODELS
 from engine.speech.lipread import read_lips
 from engine.speech.visemes import one_hot
@@ -120,7 +120,7 @@ def network(filler: Filler) -> Method:
     def make(gap: Gap) -> Array:
         steered = np.isfinite(gap.guide).any() or np.isfinite(gap.controls).any() or gap.visemes.any()
         short = np.isnan(gap.known).any(axis=1).sum() <= BRIDGE_S * MODEL_FPS
-        return bridge(gap.known) if short and not steered else filler.fill(gap)[0]
+        return bridged(gap.known) if short and not steered else filler.fill(gap)[0]
 
     return make
 

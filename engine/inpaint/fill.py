@@ -15,7 +15,7 @@ from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler, bundled
 from engine.inpaint.regions import region_shapes
 from engine.inpaint.request import Request, Style, checked
-from engine.inpaint.seams import REACH_FRAMES, bridge, land
+from engine.inpaint.seams import REACH_FRAMES, bridged, land
 from engine.models.resample import interpolate
 from engine.pose import Pose
 from engine.speech.visemes import Cue, classes_over, one_hot
@@ -102,7 +102,7 @@ def refill(
     window = _Window.of(take, request.frames)
     gap = _gap(take, request, window)
     if style == "bridge":
-        made = np.repeat(bridge(gap.known)[None], len(seeds), axis=0)
+        made = np.repeat(bridged(gap.known)[None], len(seeds), axis=0)
     else:
         gap = gap if gap.guided.any() else replace(gap, rest=_rest(take, [request.frames, *besides]))
         made = (filler or bundled()).fill(gap, seeds=seeds)

@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from engine.controls import CONTROLS, bundled_measurer
 from engine.inpaint.expected import bundled as bundled_expected
 from engine.inpaint.lend import lent, trust
-from engine.inpaint.seams import REACH_FRAMES, bridge, distance_frames, room_frames, smoothed
+from engine.inpaint.seams import REACH_FRAMES, bridge, bridged, distance_frames, room_frames, smoothed
 from engine.speech.visemes import NAMES
 from engine.take import SHAPES, Array, Mask
 
@@ -30,8 +30,9 @@ _NEAR_FRAMES = 8.0  # scale on which nearness to known frames is shown to the ne
 _SETTLED_FRAMES = 12.0  # how far from known frames motion is still largely settled by them
 _EASING = 8  # passes over where controls begin and end to be asked
 CARRY_FRAMES = 30.0  # how slowly a face leaves the seams for the one that controls let expect; of 10 ... 100 likewise
-# Motion this small is slight, of 0.003 ... 0.02, and between seams this near it counts for half, of 0 ... 6 frames.
-SLIGHT, _ROOM = 0.005, 6.0
+# Motion this small is slight, of 0.003 ... 0.04 on validation takes, and counts for half between seams with so much room,
+# of 2 ... 30 frames.
+SLIGHT, _ROOM = 0.004, 30.0
 LIFE_FRAMES = 30.0  # how far from known frames life comes under controls
 _CONTROL_NOISE = 0.5  # mm; what a control curve is trusted to, of 0.1 ... 2 on validation takes
 
@@ -172,7 +173,7 @@ def _nearest(gap: Gap, distance: Array) -> Array:
 
 def _along_guide(gap: Gap, distance: Array, statistics: Statistics) -> Array:
     """Return curves through all that is known, along the guide without its jitter, and at rest where nothing is known."""
-    plain = np.where(np.isnan(gap.known).all(axis=0), statistics.mean, bridge(gap.known))
+    plain = np.where(np.isnan(gap.known).all(axis=0), statistics.mean, bridged(gap.known))
     told: Mask = np.isnan(gap.known) & np.isfinite(gap.guide)
     if not told.any():
         return plain

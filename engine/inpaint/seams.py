@@ -35,6 +35,11 @@ def bridge(known: Array, *, reach_frames: float = REACH_FRAMES, hold: Array | No
     return made
 
 
+def bridged(known: Array) -> Array:
+    """Return weights, (frames, n), through all known ones, with what is made kept in 0..1: slopes at seams overshoot."""
+    return np.where(np.isnan(known), np.clip(bridge(known), 0.0, 1.0), known)
+
+
 def land(made: Array, known: Array, *, reach_frames: float = REACH_FRAMES, hold: Array | None = None) -> Array:
     """Return generated curves, (frames, n), moved as smoothly as possible onto every known value (NaN: free).
 

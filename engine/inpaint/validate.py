@@ -11,7 +11,7 @@ from engine.evaluate.motion import npss
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler
 from engine.inpaint.regions import REGIONS
-from engine.inpaint.seams import bridge
+from engine.inpaint.seams import bridged
 from engine.take import MODEL_FPS, Array, Mask
 
 SPANS_S = (0.2, 0.5, 1.0, 2.0, 3.0)
@@ -43,7 +43,7 @@ def validation_figures(filler: Filler, pieces: Sequence[Piece], others: Sequence
     figures: dict[str, list[float]] = {}
     ways: dict[str, Callable[[Gap], Array]] = {
         "network": lambda gap: filler.fill(gap)[0],
-        "bridge": lambda gap: bridge(gap.known),
+        "bridge": lambda gap: bridged(gap.known),
     }
     for span in SPANS_S:
         gaps = validation_gaps(pieces, round(span * MODEL_FPS), others)

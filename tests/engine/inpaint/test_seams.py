@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.inpaint.seams import bridge, distance_frames, land
+from engine.inpaint.seams import bridge, bridged, distance_frames, land
 
 
 def plain_bridge(curve: np.ndarray, reach: float, hold: np.ndarray) -> np.ndarray:
@@ -69,3 +69,17 @@ def test_distances_count_frames_to_the_nearest_known_value(known: np.ndarray) ->
     there = [np.flatnonzero(np.isfinite(curve)) for curve in known.T]
     expected = np.array([[np.abs(frame - at).min() for at in there] for frame in range(len(known))])
     np.testing.assert_array_equal(distance_frames(known), expected)
+
+
+def test_a_bridge_of_weights_stays_in_range_where_slopes_overshoot() -> None:
+    known = np.concatenate([np.linspace(0.4, 0.02, 10), np.full(10, np.nan), np.linspace(0.02, 0.4, 10)])[:, None]
+    assert bridge(known).min() < -0.01
+    made = bridged(known)
+    assert made.min() >= 0 and np.array_equal(made[np.isfinite(known)], known[np.isfinite(known)])
+
+
+def test_distances_equal_a_plain_search(known: np.ndarray) -> None:
+    for column, curve in enumerate(known.T):
+        there = np.flatnonzero(np.isfinite(curve))
+        plain = [np.abs(there - frame).min() for frame in range(len(curve))]
+        np.testing.assert_array_equal(distance_frames(known)[:, column], plain)
