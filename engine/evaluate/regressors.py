@@ -21,7 +21,7 @@ from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card
 from engine.models.unet import ALIGNMENT, UNet
 from engine.take import SHAPES, Array
 
-FRAMES, BATCH, STEPS, SEED = 64, 64, 800, 0
+FRAMES, BATCH, STEPS, SEED = 64, 64, 1500, 0
 THREE = ("lips_vertical", "lips_horizontal", "eyelid_left")  # BSS20 section 5.2: mouth opening, corners, one eyelid
 
 
