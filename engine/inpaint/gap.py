@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from engine.controls import CONTROLS, bundled_measurer
 from engine.inpaint.expected import bundled as bundled_expected
 from engine.inpaint.lend import lent, trust
-from engine.inpaint.seams import REACH_FRAMES, bridge, distance_frames, smoothed
+from engine.inpaint.seams import REACH_FRAMES, bridge, distance_frames, room_frames, smoothed
 from engine.speech.visemes import NAMES
 from engine.take import SHAPES, Array, Mask
 
@@ -24,11 +24,14 @@ GUIDE_FRAMES = 1.6  # how far from known frames a guide begins to tell more than
 # What a guide is believed against: so many times its jitter, such a share of its level for a wrong gain, and so little.
 JITTER, GAIN, LEAST = 1.25, 0.2, 0.005
 _FULL = 1.2  # of the filter's answer; so much is lost to smoothing
+ROOM_FRAMES = 2.0  # between seams nearer than this a face has no time to go where a guide leads; of 1 ... 4 likewise
 _AROUND = 4.0  # frames over which jitter and level of a guide are measured
 _NEAR_FRAMES = 8.0  # scale on which nearness to known frames is shown to the network
 _SETTLED_FRAMES = 12.0  # how far from known frames motion is still largely settled by them
 _EASING = 8  # passes over where controls begin and end to be asked
 CARRY_FRAMES = 30.0  # how slowly a face leaves the seams for the one that controls let expect; of 10 ... 100 likewise
+# Motion this small is slight, of 0.003 ... 0.02, and between seams this near it counts for half, of 0 ... 6 frames.
+SLIGHT, _ROOM = 0.005, 6.0
 LIFE_FRAMES = 30.0  # how far from known frames life comes under controls
 _CONTROL_NOISE = 0.5  # mm; what a control curve is trusted to, of 0.1 ... 2 on validation takes
 
@@ -176,11 +179,12 @@ def _along_guide(gap: Gap, distance: Array, statistics: Statistics) -> Array:
     guide = np.where(told, gap.guide, plain)
     share = distance**2 / (distance**2 + GUIDE_FRAMES**2)
     away = share * smoothed(guide - plain, GUIDE_SMOOTHING)
-    return plain + _belief(away, guide, told) * away
+    room = room_frames(gap.known)
+    return plain + _belief(away * room / (room + ROOM_FRAMES), guide, told) * away
 
 
 def _belief(away: Array, guide: Array, told: Mask) -> Array:
-    """Return how far a guide is followed, (frames, 52) in 0..1, where it would lead `away` from the plain curve.
+    """Return how far a guide is followed, (frames, 52) in 0..1, where it may lead `away` from the plain curve.
 
     Wiener's filter with powers measured around each frame: what exceeds the guide's jitter and what a wrong gain would
     do is believed. Followed everywhere alike, still shapes shook, which cost a third of the error.
@@ -209,7 +213,8 @@ def _as_expected(base: Array, gap: Gap) -> Array:
     around = np.where(asked.any(axis=0), bundled_measurer().measure(base), np.nan)
     face = bundled_expected().face(np.where(hole[:, None], gap.controls, around))
     carry = np.full(len(base), 1 / (REACH_FRAMES * CARRY_FRAMES) ** 2)
-    told = smoothed((asked.any(axis=1) | ~hole).astype(np.float64)[:, None], _EASING)
+    rows = np.flatnonzero(hole)
+    told = smoothed(np.interp(np.arange(len(base)), rows, asked[rows].any(axis=1))[:, None], _EASING)
     return base + told * (face + bridge(gap.known - face, hold=carry) - base)
 
 
@@ -232,6 +237,17 @@ def _gain(columns: np.ndarray, statistics: Statistics) -> Array:
     """Return how weights follow some controls on average, (controls, 52) per mm."""
     spread = statistics.spread[np.ix_(columns, columns)] + _CONTROL_NOISE**2 * np.eye(len(columns))
     return np.asarray(np.linalg.solve(spread, statistics.cross[columns]))
+
+
+def substantial(motion: Array, gap: Gap) -> Array:
+    """Return motion to add, (frames, 52), without what is slight where something steers, and the more so between near seams.
+
+    A network moves every shape a little, also the many that keep still; over a fifth of a second that undid all that
+    visemes had told it.
+    """
+    room = room_frames(gap.known)
+    power = gaussian_filter1d((motion * room / (room + _ROOM)) ** 2, _AROUND, axis=0)
+    return np.where(gap.guided[:, None], motion * power / (power + SLIGHT**2), motion)
 
 
 def left_open(gap: Gap, statistics: Statistics) -> Array:

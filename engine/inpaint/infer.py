@@ -12,7 +12,7 @@ import torch
 from scipy.ndimage import gaussian_filter1d
 
 from engine.inpaint.closures import shut_lips
-from engine.inpaint.gap import Gap, Ground, Statistics, bent, ground, left_open, resting, unsteered
+from engine.inpaint.gap import Gap, Ground, Statistics, bent, ground, left_open, resting, substantial, unsteered
 from engine.inpaint.lend import LENDERS
 from engine.inpaint.network import Generator, GeneratorConfig, noise_curves
 from engine.models.checkpoint import MODELS, load_model, save_model
@@ -57,7 +57,8 @@ class Filler:
         drawn = np.stack([noise_curves(len(gap.known), np.random.default_rng(seed)) for seed in seeds])
         features = torch.from_numpy(np.stack([one.features for one in unders]))
         noise = torch.from_numpy(np.float32(loud[..., None]) * drawn)
-        motions = self._motions(features, noise) + self._life(gap, unders[0], drawn)
+        motions = np.stack([substantial(motion, gap) for motion in self._motions(features, noise)])
+        motions += self._life(gap, unders[0], drawn)
         return np.stack([self._landed(gap, under, motion) for under, motion in zip(unders, motions, strict=True)])
 
     def _motions(self, features: torch.Tensor, noise: torch.Tensor) -> Array:
@@ -66,12 +67,15 @@ class Filler:
 
     def _life(self, gap: Gap, under: Ground, drawn: Array) -> Array:
         """Return quick motion that asked controls leave open, (seeds, frames, 52); nothing where none is asked."""
-        if not np.isfinite(gap.controls).any():
-            return np.zeros((len(drawn), *gap.known.shape))
-        features = torch.from_numpy(unsteered(gap, under.base, self.statistics))[None].expand(len(drawn), -1, -1)
-        motions = self._motions(features, torch.from_numpy(drawn))
-        quick = motions - gaussian_filter1d(motions, QUICK_FRAMES, axis=1, mode="nearest")
-        return np.asarray(left_open(gap, self.statistics) * quick)
+        motions = np.zeros((len(drawn), *gap.known.shape))
+        told = np.flatnonzero(np.isfinite(gap.controls).any(axis=1))
+        if not len(told):
+            return motions
+        rows = slice(told[0], told[-1] + 1)  # beside seams none of it is let in, so none is made there
+        features = torch.from_numpy(unsteered(gap, under.base, self.statistics)[rows])
+        made = self._motions(features[None].expand(len(drawn), -1, -1), torch.from_numpy(drawn[:, rows]))
+        motions[:, rows] = made - gaussian_filter1d(made, QUICK_FRAMES, axis=1, mode="nearest")
+        return np.asarray(left_open(gap, self.statistics) * motions)
 
     def _grounds(self, gap: Gap, seeds: Sequence[int]) -> list[Ground]:
         """Return what is under each fill: seeds differ in the stretch of the take that lends its motion."""

@@ -62,16 +62,11 @@ def room_frames(known: Array) -> Array:
 
 def _sides(known: Array) -> tuple[Array, Array]:
     """Return how many frames each value is from the known ones before and after it, far more than there are at ends."""
-    frames = len(known)
-    sides = np.empty((2, *known.shape))
-    for columns, unknown in _patterns(np.isnan(known), with_known=True):
-        there = np.setdiff1d(np.arange(frames), unknown)
-        at = np.searchsorted(there, np.arange(frames))
-        before = np.where(at > 0, there[np.maximum(at - 1, 0)] if len(there) else 0, -2 * frames)
-        after = np.where(at < len(there), there[np.minimum(at, len(there) - 1)] if len(there) else 0, 3 * frames)
-        before = np.where(np.isin(np.arange(frames), there), np.arange(frames), before)
-        sides[:, :, columns] = np.stack([np.arange(frames) - before, after - np.arange(frames)])[:, :, None]
-    return sides[0], sides[1]
+    frames, there = len(known), np.isfinite(known)
+    at = np.arange(frames, dtype=np.float64)[:, None]
+    before = np.maximum.accumulate(np.where(there, at, -2.0 * frames), axis=0)
+    after = np.minimum.accumulate(np.where(there, at, 3.0 * frames)[::-1], axis=0)[::-1]
+    return at - before, after - at
 
 
 def smoothed(curves: Array, passes: int) -> Array:
@@ -82,14 +77,14 @@ def smoothed(curves: Array, passes: int) -> Array:
     return curves
 
 
-def _patterns(unknown: Mask, *, with_known: bool = False) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+def _patterns(unknown: Mask) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Yield columns that share a pattern of unknown rows, with those rows."""
     columns: dict[bytes, list[int]] = {}
     rows = np.ascontiguousarray(unknown.T)
     for column, pattern in enumerate(rows):
         columns.setdefault(pattern.tobytes(), []).append(column)
     for alike in columns.values():
-        if rows[alike[0]].any() or with_known:
+        if rows[alike[0]].any():
             yield np.array(alike), np.flatnonzero(rows[alike[0]])
 
 
