@@ -24,7 +24,7 @@ from engine.take import Array
 # 1 ... 8 on validation takes; from 4 on lids flutter).
 LIVELINESS = 2.5
 # How much of the network's motion is added over motion lent by the take, which already moves; of 0.2 ... 1 on validation takes.
-OVER_LENT = 0.3
+OVER_LENT = 0.5
 # How softly lent motion ends at nought: what is pulled below lay there all along a span, as nothing recorded does, which cost
 # a third of NPSS; of 0.002 ... 0.03 on validation takes the least that mends it.
 AT_REST = 0.005
