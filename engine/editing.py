@@ -202,25 +202,30 @@ class Dragger:
         moved = edited - original
         if np.abs(moved[:, RIGHT_CONTROLS] - moved[:, LEFT_CONTROLS]).max() <= ALIKE_MM:
             before = self._once("", original, frames, low)
-            return self._made(edited, frames, low) - before
+            return self._made(edited, original, frames, low) - before
         changes = []
         for side, columns in (("right", RIGHT_CONTROLS), ("left", LEFT_CONTROLS)):
             before, after = _alike(original, columns), _alike(edited, columns)
             same = np.allclose(before, after, rtol=0, atol=1e-6)
-            changes.append(0.0 if same else self._made(after, frames, low) - self._once(side, before, frames, low))
+            changes.append(
+                0.0 if same else self._made(after, before, frames, low) - self._once(side, before, frames, low)
+            )
         right, left = changes
         return np.where(RIGHT_SHAPES, right, np.where(LEFT_SHAPES, left, (np.asarray(right) + left) / 2))
 
-    def _made(self, curves: Array, frames: tuple[int, int], low: int, *, remember: bool = False) -> Array:
-        answers = self._answers
-        return self._regressor.infer_range(curves, frames[0] - low, frames[1] - low, answers=answers, remember=remember)
+    def _made(
+        self, curves: Array, original: Array, frames: tuple[int, int], low: int, *, remember: bool = False
+    ) -> Array:
+        return self._regressor.infer_range(
+            curves, frames[0] - low, frames[1] - low, original=original, answers=self._answers, remember=remember
+        )
 
     def _once(self, what: str, curves: Array, frames: tuple[int, int], low: int) -> Array:
         """Return N of curves that stay the same while the same window is dragged."""
         if self._known_frames != frames:
             self._known, self._known_frames, self._answers = {}, frames, infer.Answers()
         if what not in self._known:
-            self._known[what] = self._made(curves, frames, low, remember=True)
+            self._known[what] = self._made(curves, curves, frames, low, remember=True)
         return self._known[what]
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from torch import Tensor
 
 from engine.controls import CONTROLS
 from engine.models.checkpoint import MODELS, load_model
@@ -50,14 +51,22 @@ class Regressor:
         for network in networks.values():
             network.eval()
 
-    def infer(self, controls: Array, *, full: bool = True, land: bool = True, kept: Array | None = None) -> Array:
+    def infer(
+        self,
+        controls: Array,
+        *,
+        full: bool = True,
+        land: bool = True,
+        kept: Array | None = None,
+        original: Array | None = None,
+    ) -> Array:
         """Return weights, (frames, 52) float64 in 0..1, of controls, (frames, 8), or 14 with the extended ones.
 
         `full=False` stops at the regressor and is not clamped; `land=False` leaves out what the full system does for
         contacts. Shapes that no given control speaks of, gaze without its controls, are as in `kept`, (frames, 52), or
         zero without it: where the eyes look moves the lids too.
         """
-        return self.infer_range(controls, 0, len(controls), full=full, land=land, kept=kept)
+        return self.infer_range(controls, 0, len(controls), full=full, land=land, kept=kept, original=original)
 
     def infer_range(
         self,
@@ -68,6 +77,7 @@ class Regressor:
         full: bool = True,
         land: bool = True,
         kept: Array | None = None,
+        original: Array | None = None,
         answers: Answers | None = None,
         remember: bool = False,
     ) -> Array:
@@ -79,42 +89,57 @@ class Regressor:
         last = min(len(controls), -(-(stop + REACH) // ALIGNMENT) * ALIGNMENT)
         rows = slice(start - first, stop - first)
         weights = np.zeros((last - first, len(SHAPES))) if kept is None else np.array(kept[first:last])
-        trust = self._fill(weights, controls[first:last], full=full, answers=answers, remember=remember)
+        known = None if original is None else original[first:last]
+        trust = self._fill(weights, controls[first:last], known, full=full, answers=answers, remember=remember)
         if not full:
             return weights[rows]
         made = np.clip(weights[rows], 0.0, 1.0)
-        return contacts.met(made, controls[start:stop], trust[rows]) if land else made
+        if not land:
+            return made
+        return contacts.met(made, controls[start:stop], trust[rows], None if known is None else known[rows])
 
-    def _fill(self, weights: Array, controls: Array, *, full: bool, answers: Answers | None, remember: bool) -> Array:
+    def _fill(
+        self,
+        weights: Array,
+        controls: Array,
+        original: Array | None,
+        *,
+        full: bool,
+        answers: Answers | None,
+        remember: bool,
+    ) -> Array:
         """Put what the networks say into weights, (frames, 52); returns how far each contact is to be trusted, (frames, 3)."""
         trust = np.zeros((len(controls), len(contacts.MEETING)))
         for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
             asked = controls[:, area.control_columns]
             found = answers.find(area.name, asked) if answers is not None and full else None
-            said, trusted = found or self._ask(area.name, asked, full=full)
+            known = None if original is None else original[:, area.control_columns]
+            said, trusted = found or self._ask(area.name, asked, known, full=full)
             if answers is not None and remember and found is None:
                 answers.of.setdefault(area.name, []).append((asked, said, trusted))
             weights[:, area.shape_columns] = said
             trust[:, contacts.of_area(area.name)] = trusted
         return trust
 
-    def _ask(self, area: str, asked: Array, *, full: bool) -> tuple[Array, Array]:
-        """Return an area's weights, (frames, shapes), of its curves, (frames, controls), and the trust in its contacts.
-
-        The last frame is held up to a multiple of the network's pooling.
-        """
+    def _ask(self, area: str, asked: Array, original: Array | None, *, full: bool) -> tuple[Array, Array]:
+        """Return an area's weights, (frames, shapes), of its curves, (frames, controls), and the trust in its contacts."""
         frames, network = len(asked), self.networks[area]
-        held = np.pad(asked, ((0, -frames % ALIGNMENT), (0, 0)), mode="edge")
         with torch.inference_mode():
-            curves = torch.from_numpy(held.T.astype(np.float32))[None]
+            curves = _held(asked)
             share = torch.zeros(1, 1, frames)
             if full:
-                curves, share = network.tempered(curves)
+                curves, share = network.tempered(curves, None if original is None else _held(original))
             said = network(curves, full=full)[0].numpy().T[:frames]
         return said, share[0].numpy().T[:frames]
 
     def _areas(self, *, extended: bool) -> list[Area]:
         return [area for area in AREAS + EXTENDED_AREAS * extended if area.name in self.networks]
+
+
+def _held(curves: Array) -> Tensor:
+    """Return curves, (frames, n), as (1, n, frames), the last frame held up to a multiple of the networks' pooling."""
+    held = np.pad(curves, ((0, -len(curves) % ALIGNMENT), (0, 0)), mode="edge")
+    return torch.from_numpy(held.T.astype(np.float32))[None]
 
 
 def load(folder: Path = MODELS) -> Regressor:

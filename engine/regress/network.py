@@ -15,7 +15,8 @@ LOOK = 8  # frames on either side that are scaled with an excess, and over which
 # stacked on what looks 2 * LOOK frames around, and 4 for median and velocity.
 REACH = 68
 ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
-BEYOND = 0.005  # share of recorded frames that the full system holds to be further out than a face goes
+BEYOND = 0.05  # share of recorded frames further out than an edit of a take that stays within may bring a face
+ROOM = 0.3  # of that bound: how much further out than the take itself is an edit may go, wherever the take is
 
 
 @dataclass(frozen=True)
@@ -102,25 +103,35 @@ class AreaNetwork(nn.Module):
         cleaned: Tensor = self.autoencoder(self.regressor(bounded).clamp(0.0, 1.0))
         return cleaned
 
-    def tempered(self, controls: Tensor) -> tuple[Tensor, Tensor]:
-        """Return controls, (batch, controls, frames) in mm, scaled towards their mean where they outdo recorded ones.
+    def tempered(self, controls: Tensor, original: Tensor | None = None) -> tuple[Tensor, Tensor]:
+        """Return controls, (batch, controls, frames) in mm, drawn back to an original's where they outdo what faces do.
 
-        Further out or faster than `bound`, in the metric of how recorded controls and their velocities vary together.
-        The motion around an excess is scaled as a whole and keeps its form; an excess too short to be motion, salt or
-        pepper, is scaled alone. Returned with the scale, (batch, 1, frames), 1 where nothing had to be done.
+        They may go as far out and as fast as `bound`, in the metric of how recorded controls and their velocities vary
+        together, and by `ROOM` further than the original is there, which itself is never tempered; without an original
+        the mean stands for it. How they depart from it around an excess is scaled as a whole and keeps its form; an
+        excess too short to be motion, salt or pepper, is scaled alone. Returned with the scale, (batch, 1, frames), 1
+        where nothing had to be done.
         """
-        away = controls - self.centre
-        lasting = pad(away, (2, 2), mode="replicate").unfold(2, 5, 1).median(dim=-1).values
-        share = -max_pool1d(-self._share(lasting), 2 * LOOK + 1, stride=1, padding=LOOK)
+        known = self.centre.expand_as(controls) if original is None else original
+        away = controls - known
+        motion, moment = self._shares(_median(away), away, known)
+        share = -max_pool1d(-motion, 2 * LOOK + 1, stride=1, padding=LOOK)
         share = avg_pool1d(pad(share, (LOOK, LOOK), mode="replicate"), 2 * LOOK + 1, stride=1)
-        share = torch.minimum(share, self._share(away))
-        return self.centre + away * share, share
+        share = torch.minimum(share, moment)
+        return known + away * share, share
 
-    def _share(self, away: Tensor) -> Tensor:
-        """Return by how much to scale each frame, (batch, 1, frames), for it to be within the bound."""
-        distance = (self.whiten @ _with_velocity(away)).norm(dim=1, keepdim=True)
-        share: Tensor = (self.bound / distance.clamp(min=1e-6)).clamp(max=1.0)
-        return share
+    def _shares(self, lasting: Tensor, away: Tensor, known: Tensor) -> Tensor:
+        """Return the largest shares, (2, batch, 1, frames), of two departures that leave each frame within the bound.
+
+        Solves ``|begun + share * along| = radius`` in the whitened space, where within the bound is within a ball.
+        """
+        moving = self.whiten @ _with_velocity(torch.cat([lasting, away, known - self.centre]))
+        along, begun = moving.unflatten(0, (3, -1)).split((2, 1))  # (2 and 1, batch, 2 * controls, frames)
+        out = begun.square().sum(dim=2, keepdim=True).sqrt()
+        radius = torch.maximum(self.bound, out + ROOM * self.bound)
+        across, square = (along * begun).sum(dim=2, keepdim=True), along.square().sum(dim=2, keepdim=True)
+        reach = (across.square() + square * (radius - out) * (radius + out)).sqrt() - across
+        return torch.where(square > reach, reach / square, 1.0)
 
     @torch.no_grad()
     def learn_bounds(self, controls: Tensor) -> None:
@@ -145,6 +156,15 @@ def _with_velocity(curves: Tensor) -> Tensor:
     """Return curves, (batch, n, frames), and below them how they change over four frames."""
     held = pad(curves, (2, 2), mode="replicate")
     return torch.cat([curves, held[..., 4:] - held[..., :-4]], dim=1)
+
+
+def _median(curves: Tensor) -> Tensor:
+    """Return the median of each five frames of curves, (batch, n, frames), by comparisons, which cost less than sorting."""
+    held = pad(curves, (2, 2), mode="replicate")
+    one, two, three, four, five = (held[..., shift : shift + curves.shape[2]] for shift in range(5))
+    low = torch.maximum(torch.minimum(one, two), torch.minimum(four, five))
+    high = torch.minimum(torch.maximum(one, two), torch.maximum(four, five))
+    return torch.maximum(torch.minimum(low, high), torch.minimum(torch.maximum(low, high), three))
 
 
 def from_config(config: dict[str, Any]) -> AreaNetwork:

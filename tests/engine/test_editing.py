@@ -50,8 +50,8 @@ def test_a_patch_equals_inference_over_the_whole_take(demo_take: Take, fps: floa
     wanted = dragger.controls.copy()
     wanted[start : start + 30] = asked
     at = np.arange(int(np.ceil((frames - 1) * 30 / fps)) + 1) * fps / 30
-    network = infer.bundled()
-    change = network.infer(interpolate(wanted, at)) - network.infer(interpolate(dragger.controls, at))
+    network, original = infer.bundled(), interpolate(dragger.controls, at)
+    change = network.infer(interpolate(wanted, at), original=original) - network.infer(original, original=original)
     whole = take.weights + interpolate(change, np.arange(frames) * 30 / fps)
     expected = np.clip(whole, np.minimum(take.weights, 0), np.maximum(take.weights, 1))
     np.testing.assert_allclose(
