@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 import numpy as np
@@ -43,8 +44,7 @@ def decode(data: bytes) -> Packet | Drop:
     found = {_COLUMNS[name]: int(percent) for name, percent in _WEIGHT.findall(f"|{text}") if name in _COLUMNS}
     if not found:
         return Drop.TEXT
-    weights = np.zeros(len(SHAPES), np.float32)
-    weights[list(found)] = np.array(list(found.values())) / 100.0
+    weights = np.array([found.get(column, 0) / 100.0 for column in range(len(SHAPES))], np.float32)
     return packet(SUBJECT, None, FALLBACK_FPS, weights, rotations)
 
 
@@ -60,5 +60,5 @@ def _read_rotation(entry: str, rotations: Floats) -> bool:
         return False
     if len(degrees) != 3 or not all(abs(angle) <= MAX_DEGREES for angle in degrees):
         return False
-    rotations[column : column + 3] = np.radians(degrees)[list(_YAW_PITCH_ROLL)]
+    rotations[column : column + 3] = [math.radians(degrees[axis]) for axis in _YAW_PITCH_ROLL]
     return True

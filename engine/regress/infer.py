@@ -20,12 +20,12 @@ from engine.take import SHAPES, Array
 
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """What the networks said of curves that are asked about again and again, each time with some of them changed.
+    """What the networks said of the same rows, asked about again and again, each time with some curves changed.
 
     Attributes
     ----------
-    of : by area, the curves its network read, (frames, controls), its weights, (frames, shapes), and how far its
-        contacts are to be trusted, (frames, contacts)
+    of : by area, the curves its network read, (frames, controls), its weights, (rows, shapes), and how far its contacts
+        are to be trusted, (rows, contacts)
     """
 
     of: dict[str, list[tuple[Array, Array, Array]]] = field(default_factory=dict)
@@ -64,7 +64,8 @@ class Regressor:
 
         `full=False` stops at the regressor and is not clamped; `land=False` leaves out what the full system does for
         contacts. Shapes that no given control speaks of, gaze without its controls, are as in `kept`, (frames, 52), or
-        zero without it: where the eyes look moves the lids too.
+        zero without it: where the eyes look moves the lids too. What the curves of an `original`, (frames, 8 or 14), do
+        themselves is neither tempered nor taken for a mistake; without one, what people were recorded to do.
         """
         return self.infer_range(controls, 0, len(controls), full=full, land=land, kept=kept, original=original)
 
@@ -87,50 +88,54 @@ class Regressor:
         """
         first = max(0, (start - REACH) // ALIGNMENT * ALIGNMENT)
         last = min(len(controls), -(-(stop + REACH) // ALIGNMENT) * ALIGNMENT)
+        weights = np.zeros((stop - start, len(SHAPES))) if kept is None else np.array(kept[start:stop])
         rows = slice(start - first, stop - first)
-        weights = np.zeros((last - first, len(SHAPES))) if kept is None else np.array(kept[first:last])
-        known = None if original is None else original[first:last]
-        trust = self._fill(weights, controls[first:last], known, full=full, answers=answers, remember=remember)
+        seen = (controls[first:last], None if original is None else original[first:last])
+        trust = self._fill(weights, *seen, rows, full=full, answers=answers, remember=remember)
         if not full:
-            return weights[rows]
-        made = np.clip(weights[rows], 0.0, 1.0)
+            return weights
+        made = np.clip(weights, 0.0, 1.0)
         if not land:
             return made
-        return contacts.met(made, controls[start:stop], trust[rows], None if known is None else known[rows])
+        return contacts.met(made, controls[start:stop], trust, None if original is None else original[start:stop])
 
     def _fill(
         self,
         weights: Array,
         controls: Array,
         original: Array | None,
+        rows: slice,
         *,
         full: bool,
         answers: Answers | None,
         remember: bool,
     ) -> Array:
-        """Put what the networks say into weights, (frames, 52); returns how far each contact is to be trusted, (frames, 3)."""
-        trust = np.zeros((len(controls), len(contacts.MEETING)))
+        """Put what the networks say of some rows of controls into weights, (rows, 52).
+
+        Returns how far each contact is to be trusted, (rows, 3).
+        """
+        trust = np.zeros((len(weights), len(contacts.MEETING)))
         for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
             asked = controls[:, area.control_columns]
             found = answers.find(area.name, asked) if answers is not None and full else None
             known = None if original is None else original[:, area.control_columns]
-            said, trusted = found or self._ask(area.name, asked, known, full=full)
+            said, trusted = found or self._ask(area.name, asked, known, rows, full=full)
             if answers is not None and remember and found is None:
                 answers.of.setdefault(area.name, []).append((asked, said, trusted))
             weights[:, area.shape_columns] = said
             trust[:, contacts.of_area(area.name)] = trusted
         return trust
 
-    def _ask(self, area: str, asked: Array, original: Array | None, *, full: bool) -> tuple[Array, Array]:
-        """Return an area's weights, (frames, shapes), of its curves, (frames, controls), and the trust in its contacts."""
-        frames, network = len(asked), self.networks[area]
+    def _ask(self, area: str, asked: Array, original: Array | None, rows: slice, *, full: bool) -> tuple[Array, Array]:
+        """Return an area's weights, (rows, shapes), of its curves, (frames, controls), and the trust in its contacts."""
+        network = self.networks[area]
         with torch.inference_mode():
             curves = _held(asked)
-            share = torch.zeros(1, 1, frames)
+            share = torch.zeros(1, 1, len(asked))
             if full:
                 curves, share = network.tempered(curves, None if original is None else _held(original))
-            said = network(curves, full=full)[0].numpy().T[:frames]
-        return said, share[0].numpy().T[:frames]
+            said = network(curves, full=full, rows=rows)[0].numpy().T
+        return said, share[0, :, rows].numpy().T
 
     def _areas(self, *, extended: bool) -> list[Area]:
         return [area for area in AREAS + EXTENDED_AREAS * extended if area.name in self.networks]

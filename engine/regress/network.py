@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import torch
 from torch import Tensor, nn
-from torch.nn.functional import avg_pool1d, max_pool1d, pad
+from torch.nn.functional import avg_pool1d, conv1d, elu, max_pool1d, pad
 
 LOOK = 8  # frames on either side that are scaled with an excess, and over which the scale comes and goes
-# One U-Net feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 frames through its convolutions and up to 3 through pooling; two are
-# stacked on what looks 2 * LOOK frames around, and 4 for median and velocity.
-REACH = 68
+UNET_REACH = 24  # frames: one feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 through its convolutions and up to 3 through pooling
+REACH = 2 * UNET_REACH + 2 * LOOK + 4  # two U-Nets on what looks 2 * LOOK around, and 4 for median and velocity
 ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
 BEYOND = 0.05  # share of recorded frames further out than an edit of a take that stays within may bring a face
 ROOM = 0.3  # of that bound: how much further out than the take itself is an edit may go, wherever the take is
@@ -32,6 +32,18 @@ def _block(inputs: int, outputs: int) -> nn.Sequential:
     return nn.Sequential(
         nn.Conv1d(inputs, outputs, 3, padding=1), nn.ELU(), nn.Conv1d(outputs, outputs, 3, padding=1), nn.ELU()
     )
+
+
+def _twice(x: Tensor, kernels: Sequence[Tensor]) -> Tensor:
+    """Run a block."""
+    first, bias, second, offset = kernels
+    x = elu(conv1d(x, first, bias, padding=1), inplace=True)
+    return elu(conv1d(x, second, offset, padding=1), inplace=True)
+
+
+def _grown(x: Tensor) -> Tensor:
+    """Return every frame twice."""
+    return x.unsqueeze(3).expand(-1, -1, -1, 2).flatten(2)
 
 
 class UNet(nn.Module):
@@ -55,18 +67,21 @@ class UNet(nn.Module):
         self.last = nn.Conv1d(narrow, config.outputs, 1)
         nn.init.zeros_(self.last.weight)
         nn.init.zeros_(self.last.bias)  # type: ignore[arg-type]
-        self.pool, self.grow = nn.MaxPool1d(2), nn.Upsample(scale_factor=2, mode="nearest")
+        # Run by hand: called as modules, networks this small spend a quarter of a drag step on the way to their kernels.
+        blocks = (self.down1, self.down2, self.bottom, self.up2, self.up1)
+        self._kernels = [list(block.parameters()) for block in blocks]
         self.register_buffer("mean", torch.zeros(1, config.inputs, 1))
         self.register_buffer("scale", torch.ones(1, config.inputs, 1))
 
     def forward(self, curves: Tensor) -> Tensor:
         """Map curves; frames must be a multiple of `ALIGNMENT`."""
         x = (curves - self.mean) / self.scale
-        fine = self.down1(x)  # (batch, narrow, frames)
-        half = self.down2(self.pool(fine))  # (batch, middle, frames / 2)
-        deep = self.bottom(self.pool(half))  # (batch, wide, frames / 4)
-        half = self.up2(torch.cat([self.grow(deep), half], dim=1))
-        fine = self.up1(torch.cat([self.grow(half), fine], dim=1))
+        down1, down2, bottom, up2, up1 = self._kernels
+        fine = _twice(x, down1)  # (batch, narrow, frames)
+        half = _twice(max_pool1d(fine, 2), down2)  # (batch, middle, frames / 2)
+        deep = _twice(max_pool1d(half, 2), bottom)  # (batch, wide, frames / 4)
+        half = _twice(torch.cat([_grown(deep), half], dim=1), up2)
+        fine = _twice(torch.cat([_grown(half), fine], dim=1), up1)
         mapped: Tensor = self.linear(x) + self.last(fine)
         return mapped
 
@@ -94,14 +109,21 @@ class AreaNetwork(nn.Module):
         self.register_buffer("whiten", torch.eye(2 * regressor.inputs))
         self.register_buffer("bound", torch.tensor(torch.inf))
 
-    def forward(self, controls: Tensor, *, full: bool = True) -> Tensor:
-        """Return weights, (batch, shapes, frames), of controls, (batch, controls, frames) in mm."""
+    def forward(self, controls: Tensor, *, full: bool = True, rows: slice | None = None) -> Tensor:
+        """Return weights, (batch, shapes, frames), of controls, (batch, controls, frames) in mm.
+
+        Of some `rows` alone where they are given; neither network then runs over more than these can feel.
+        """
+        frames = controls.shape[-1]
+        rows = rows or slice(0, frames)
+        near = _around(rows, UNET_REACH, frames)
         if not full:
-            weights: Tensor = self.regressor(controls)
-            return weights
-        bounded = torch.minimum(torch.maximum(controls, self.low), self.high)
-        cleaned: Tensor = self.autoencoder(self.regressor(bounded).clamp(0.0, 1.0))
-        return cleaned
+            weights: Tensor = self.regressor(controls[..., near])
+            return weights[..., _within(near, rows)]
+        far = _around(near, UNET_REACH, frames)
+        bounded = torch.minimum(torch.maximum(controls[..., far], self.low), self.high)
+        cleaned: Tensor = self.autoencoder(self.regressor(bounded)[..., _within(far, near)].clamp(0.0, 1.0))
+        return cleaned[..., _within(near, rows)]
 
     def tempered(self, controls: Tensor, original: Tensor | None = None) -> tuple[Tensor, Tensor]:
         """Return controls, (batch, controls, frames) in mm, drawn back to an original's where they outdo what faces do.
@@ -126,7 +148,8 @@ class AreaNetwork(nn.Module):
         Solves ``|begun + share * along| = radius`` in the whitened space, where within the bound is within a ball.
         """
         moving = self.whiten @ _with_velocity(torch.cat([lasting, away, known - self.centre]))
-        along, begun = moving.unflatten(0, (3, -1)).split((2, 1))  # (2 and 1, batch, 2 * controls, frames)
+        moving = moving.view(3, len(away), *moving.shape[1:])  # (3, batch, 2 * controls, frames)
+        along, begun = moving[:2], moving[2:]
         out = begun.square().sum(dim=2, keepdim=True).sqrt()
         radius = torch.maximum(self.bound, out + ROOM * self.bound)
         across, square = (along * begun).sum(dim=2, keepdim=True), along.square().sum(dim=2, keepdim=True)
@@ -150,6 +173,17 @@ class AreaNetwork(nn.Module):
     def config(self) -> dict[str, Any]:
         """Return what rebuilds this module."""
         return {"regressor": asdict(self.regressor.config), "autoencoder": asdict(self.autoencoder.config)}
+
+
+def _around(rows: slice, reach: int, frames: int) -> slice:
+    """Return rows with `reach` more on either side, out to where windows may begin and end, of so many frames."""
+    first = max(0, (rows.start - reach) // ALIGNMENT * ALIGNMENT)
+    return slice(first, min(frames, -(-(rows.stop + reach) // ALIGNMENT) * ALIGNMENT))
+
+
+def _within(outer: slice, inner: slice) -> slice:
+    """Return a range, counted from the start of one that holds it."""
+    return slice(inner.start - outer.start, inner.stop - outer.start)
 
 
 def _with_velocity(curves: Tensor) -> Tensor:
