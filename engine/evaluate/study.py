@@ -74,6 +74,7 @@ def _networks(training: Sequence[Piece], held: Sequence[Piece], settings: Settin
     unbound = Regressor({name: copy.deepcopy(network) for name, network in networks.items()})
     for network in unbound.networks.values():
         network.bound.fill_(torch.inf)
+        network.usual.fill_(torch.inf)
     return {
         "regressor": lambda controls, _: made.infer(controls, full=False),
         "full": full(made),

@@ -24,7 +24,7 @@ NEAR_MM, FAR_MM = 5.5, 8.0  # asked or reached: nearer than the first is about t
 CLOSE_MM, APART_MM = 4.0, 8.0  # a face that misses by less is corrected; one that misses by more was mended on purpose
 ALIKE_MM, UNLIKE_MM = 3.0, 5.0  # so was one whose lids move together where the request's do not
 TEMPERED, WHOLE = 0.4, 0.7  # and one whose request had to be scaled down that much
-ROUNDS = 2
+ROUNDS = 3
 FREE = np.isin(np.arange(len(SHAPES)), np.concatenate([area.shape_columns for area in AREAS if area.name in AREA_OF]))
 
 
@@ -51,7 +51,7 @@ def met(weights: Array, asked: Array, scale: Array, original: Array | None = Non
     """
     wanted, measurer = asked[:, MEETING], _measurer()
     reached = measurer.measure(weights)
-    missed = np.maximum(wanted, SHUT_MM) - np.maximum(reached, SHUT_MM)
+    missed = np.where(np.maximum(wanted, reached) > SHUT_MM, np.maximum(wanted, SHUT_MM) - reached, 0.0)
     off, unlike = np.abs(missed), np.abs(missed[:, 1] - missed[:, 2])
     if original is not None:
         departed = wanted - original[:, MEETING]

@@ -15,8 +15,9 @@ LOOK = 8  # frames on either side that are scaled with an excess, and over which
 UNET_REACH = 24  # frames: one feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 through its convolutions and up to 3 through pooling
 REACH = 2 * UNET_REACH + 2 * LOOK + 4  # two U-Nets on what looks 2 * LOOK around, and 4 for median and velocity
 ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
-BEYOND = 0.05  # share of recorded frames further out than an edit of a take that stays within may bring a face
-ROOM = 0.3  # of that bound: how much further out than the take itself is an edit may go, wherever the take is
+BEYOND = 0.005  # share of recorded frames that the full system holds to be further out than a face goes
+UNUSUAL = 0.05  # and than an edit may bring a take whose own curves are known, and are never held to be too far out
+ROOM = 0.3  # of the bound, by which an edit may go further than the take, wherever that is
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class UNetConfig:
     inputs: int
     outputs: int
     widths: tuple[int, int, int] = (32, 64, 128)
+    waves: int = 0  # random ones, by which the linear part bends (Rahimi and Recht 2007)
 
 
 def _block(inputs: int, outputs: int) -> nn.Sequential:
@@ -55,12 +57,17 @@ class UNet(nn.Module):
 
     mean: Tensor
     scale: Tensor
+    turns: Tensor
+    phases: Tensor
 
     def __init__(self, config: UNetConfig) -> None:
         super().__init__()
         narrow, middle, wide = config.widths
         self.config = config
-        self.linear = nn.Conv1d(config.inputs, config.outputs, 1)
+        self.linear = nn.Conv1d(config.inputs + config.waves, config.outputs, 1)
+        if config.waves:
+            self.register_buffer("turns", torch.randn(config.waves, config.inputs, 1) / math.sqrt(config.inputs))
+            self.register_buffer("phases", 2 * math.pi * torch.rand(config.waves))
         self.down1, self.down2 = _block(config.inputs, narrow), _block(narrow, middle)
         self.bottom = _block(middle, wide)
         self.up2, self.up1 = _block(wide + middle, middle), _block(middle + narrow, narrow)
@@ -82,8 +89,14 @@ class UNet(nn.Module):
         deep = _twice(max_pool1d(half, 2), bottom)  # (batch, wide, frames / 4)
         half = _twice(torch.cat([_grown(deep), half], dim=1), up2)
         fine = _twice(torch.cat([_grown(half), fine], dim=1), up1)
-        mapped: Tensor = self.linear(x) + self.last(fine)
+        mapped: Tensor = self.linear(self.bent(x)) + self.last(fine)
         return mapped
+
+    def bent(self, x: Tensor) -> Tensor:
+        """Return what the linear part sees of standardised inputs, (batch, inputs, frames): these and their waves."""
+        if not self.config.waves:
+            return x
+        return torch.cat([x, math.sqrt(2.0) * conv1d(x, self.turns, self.phases).cos()], dim=1)
 
 
 class AreaNetwork(nn.Module):
@@ -99,6 +112,7 @@ class AreaNetwork(nn.Module):
     centre: Tensor
     whiten: Tensor
     bound: Tensor
+    usual: Tensor
 
     def __init__(self, regressor: UNetConfig, autoencoder: UNetConfig) -> None:
         super().__init__()
@@ -108,6 +122,7 @@ class AreaNetwork(nn.Module):
         self.register_buffer("centre", torch.zeros(1, regressor.inputs, 1))
         self.register_buffer("whiten", torch.eye(2 * regressor.inputs))
         self.register_buffer("bound", torch.tensor(torch.inf))
+        self.register_buffer("usual", torch.tensor(torch.inf))
 
     def forward(self, controls: Tensor, *, full: bool = True, rows: slice | None = None) -> Tensor:
         """Return weights, (batch, shapes, frames), of controls, (batch, controls, frames) in mm.
@@ -126,24 +141,25 @@ class AreaNetwork(nn.Module):
         return cleaned[..., _within(near, rows)]
 
     def tempered(self, controls: Tensor, original: Tensor | None = None) -> tuple[Tensor, Tensor]:
-        """Return controls, (batch, controls, frames) in mm, drawn back to an original's where they outdo what faces do.
+        """Return controls, (batch, controls, frames) in mm, drawn back to where faces go from where they outdo these.
 
-        They may go as far out and as fast as `bound`, in the metric of how recorded controls and their velocities vary
-        together, and by `ROOM` further than the original is there, which itself is never tempered; without an original
-        the mean stands for it. How they depart from it around an excess is scaled as a whole and keeps its form; an
-        excess too short to be motion, salt or pepper, is scaled alone. Returned with the scale, (batch, 1, frames), 1
-        where nothing had to be done.
+        Further out or faster than `bound`, in the metric of how recorded controls and their velocities vary together,
+        they are drawn back towards the mean. Of an edit, the `original` take's curves are known: it may go as far out as
+        `usual`, and by `ROOM` further than the take is there, and is drawn back towards the take, which itself is never
+        tempered. The departure around an excess is scaled as a whole and keeps its form; an excess too short to be
+        motion, salt or pepper, is scaled alone. Returned with the scale, (batch, 1, frames), 1 where nothing had to be
+        done.
         """
         known = self.centre.expand_as(controls) if original is None else original
         away = controls - known
-        motion, moment = self._shares(_median(away), away, known)
+        motion, moment = self._shares(_median(away), away, known, self.bound if original is None else self.usual)
         share = -max_pool1d(-motion, 2 * LOOK + 1, stride=1, padding=LOOK)
         share = avg_pool1d(pad(share, (LOOK, LOOK), mode="replicate"), 2 * LOOK + 1, stride=1)
         share = torch.minimum(share, moment)
         return known + away * share, share
 
-    def _shares(self, lasting: Tensor, away: Tensor, known: Tensor) -> Tensor:
-        """Return the largest shares, (2, batch, 1, frames), of two departures that leave each frame within the bound.
+    def _shares(self, lasting: Tensor, away: Tensor, known: Tensor, bound: Tensor) -> Tensor:
+        """Return the largest shares, (2, batch, 1, frames), of two departures that leave each frame within a bound.
 
         Solves ``|begun + share * along| = radius`` in the whitened space, where within the bound is within a ball.
         """
@@ -151,7 +167,7 @@ class AreaNetwork(nn.Module):
         moving = moving.view(3, len(away), *moving.shape[1:])  # (3, batch, 2 * controls, frames)
         along, begun = moving[:2], moving[2:]
         out = begun.square().sum(dim=2, keepdim=True).sqrt()
-        radius = torch.maximum(self.bound, out + ROOM * self.bound)
+        radius = torch.maximum(bound, out + ROOM * bound)
         across, square = (along * begun).sum(dim=2, keepdim=True), along.square().sum(dim=2, keepdim=True)
         reach = (across.square() + square * (radius - out) * (radius + out)).sqrt() - across
         return torch.where(square > reach, reach / square, 1.0)
@@ -168,7 +184,8 @@ class AreaNetwork(nn.Module):
         whiten = torch.linalg.inv(torch.linalg.cholesky(covariance))
         self.whiten.copy_(whiten)
         distance = (moving @ whiten.T).norm(dim=1)
-        self.bound.copy_(distance.kthvalue(math.ceil((1 - BEYOND) * len(distance))).values)
+        for bound, share in ((self.bound, BEYOND), (self.usual, UNUSUAL)):
+            bound.copy_(distance.kthvalue(math.ceil((1 - share) * len(distance))).values)
 
     def config(self) -> dict[str, Any]:
         """Return what rebuilds this module."""
