@@ -11,13 +11,12 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import avg_pool1d, conv1d, elu, max_pool1d, pad
 
-LOOK = 8  # frames on either side that are scaled with an excess, and over which the scale comes and goes
+LOOK = 24  # frames on either side that are scaled with an excess, and over which the scale comes and goes
 UNET_REACH = 24  # frames: one feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 through its convolutions and up to 3 through pooling
 REACH = 2 * UNET_REACH + 2 * LOOK + 4  # two U-Nets on what looks 2 * LOOK around, and 4 for median and velocity
 ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
 BEYOND = 0.005  # share of recorded frames that the full system holds to be further out than a face goes
-UNUSUAL = 0.05  # and than an edit may bring a take whose own curves are known, and are never held to be too far out
-ROOM = 0.3  # of the bound, by which an edit may go further than the take, wherever that is
+ROOM = 0.3  # of the usual bound, by which an edit may go further than the take, wherever that is
 
 
 @dataclass(frozen=True)
@@ -173,8 +172,8 @@ class AreaNetwork(nn.Module):
         return torch.where(square > reach, reach / square, 1.0)
 
     @torch.no_grad()
-    def learn_bounds(self, controls: Tensor) -> None:
-        """Take the bounds from recorded controls, (windows, controls, frames) in mm."""
+    def learn_bounds(self, controls: Tensor, unusual: float) -> None:
+        """Take the bounds from recorded controls, (windows, controls, frames) in mm, a share of them `unusual`."""
         self.low.copy_(controls.amin(dim=(0, 2))[None, :, None])
         self.high.copy_(controls.amax(dim=(0, 2))[None, :, None])
         self.centre.copy_(controls.mean(dim=(0, 2))[None, :, None])
@@ -184,7 +183,7 @@ class AreaNetwork(nn.Module):
         whiten = torch.linalg.inv(torch.linalg.cholesky(covariance))
         self.whiten.copy_(whiten)
         distance = (moving @ whiten.T).norm(dim=1)
-        for bound, share in ((self.bound, BEYOND), (self.usual, UNUSUAL)):
+        for bound, share in ((self.bound, BEYOND), (self.usual, unusual)):
             bound.copy_(distance.kthvalue(math.ceil((1 - share) * len(distance))).values)
 
     def config(self) -> dict[str, Any]:

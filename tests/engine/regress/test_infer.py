@@ -22,7 +22,7 @@ def regressor() -> Regressor:
         for unet in (network.regressor, network.autoencoder):
             torch.nn.init.normal_(unet.last.weight, std=0.3)
         network.regressor.scale.fill_(20.0)
-        network.learn_bounds(torch.rand(8, inputs, 64) * 30)
+        network.learn_bounds(torch.rand(8, inputs, 64) * 30, 0.05)
         networks[area.name] = network
     return Regressor(networks)
 

@@ -45,7 +45,7 @@ def test_a_face_that_exists_is_its_own_nearest() -> None:
 
 def _tempered(controls: torch.Tensor) -> AreaNetwork:
     network = AreaNetwork(UNetConfig(3, 2, (4, 4, 4)), UNetConfig(2, 2, (4, 4, 4)))
-    network.learn_bounds(controls)
+    network.learn_bounds(controls, 0.05)
     return network
 
 
