@@ -143,33 +143,24 @@ class AreaNetwork(nn.Module):
         """Return controls, (batch, controls, frames) in mm, drawn back to where faces go from where they outdo these.
 
         Further out or faster than `bound`, in the metric of how recorded controls and their velocities vary together,
-        they are drawn back towards the mean. Of an edit, the `original` take's curves are known: it may go as far out as
-        `usual`, and by `ROOM` further than the take is there, and is drawn back towards the take, which itself is never
-        tempered. The departure around an excess is scaled as a whole and keeps its form; an excess too short to be
-        motion, salt or pepper, is scaled alone. Returned with the scale, (batch, 1, frames), 1 where nothing had to be
-        done.
+        they are drawn back towards the mean. Of an edit, the `original` take's curves are known: it may last as far out
+        as `usual`, and by `ROOM` further than the take is there, and is drawn back towards the take, which itself is
+        never tempered. The departure around an excess is scaled as a whole and keeps its form; an excess too short to
+        be motion, salt or pepper, is scaled alone. Returned with the scale, (batch, 1, frames), 1 where nothing had to
+        be done.
         """
-        known = self.centre.expand_as(controls) if original is None else original
+        known, count = self.centre.expand_as(controls) if original is None else original, controls.shape[1]
         away = controls - known
-        motion, moment = self._shares(_median(away), away, known, self.bound if original is None else self.usual)
-        share = -max_pool1d(-motion, 2 * LOOK + 1, stride=1, padding=LOOK)
+        moving = self.whiten @ _with_velocity(torch.cat([_median(away), away, known - self.centre]))
+        lasting, moment, begun = moving.view(3, len(away), *moving.shape[1:])  # each (batch, 2 * controls, frames)
+        if original is None:
+            share = _share(lasting, begun, self.bound)
+        else:  # the first rows of the triangular `whiten` are of positions alone
+            share = _share(lasting[:, :count], begun[:, :count], self.usual)
+        share = -max_pool1d(-share, 2 * LOOK + 1, stride=1, padding=LOOK)
         share = avg_pool1d(pad(share, (LOOK, LOOK), mode="replicate"), 2 * LOOK + 1, stride=1)
-        share = torch.minimum(share, moment)
+        share = torch.minimum(share, _share(moment, begun, self.bound))
         return known + away * share, share
-
-    def _shares(self, lasting: Tensor, away: Tensor, known: Tensor, bound: Tensor) -> Tensor:
-        """Return the largest shares, (2, batch, 1, frames), of two departures that leave each frame within a bound.
-
-        Solves ``|begun + share * along| = radius`` in the whitened space, where within the bound is within a ball.
-        """
-        moving = self.whiten @ _with_velocity(torch.cat([lasting, away, known - self.centre]))
-        moving = moving.view(3, len(away), *moving.shape[1:])  # (3, batch, 2 * controls, frames)
-        along, begun = moving[:2], moving[2:]
-        out = begun.square().sum(dim=2, keepdim=True).sqrt()
-        radius = torch.maximum(bound, out + ROOM * bound)
-        across, square = (along * begun).sum(dim=2, keepdim=True), along.square().sum(dim=2, keepdim=True)
-        reach = (across.square() + square * (radius - out) * (radius + out)).sqrt() - across
-        return torch.where(square > reach, reach / square, 1.0)
 
     @torch.no_grad()
     def learn_bounds(self, controls: Tensor, unusual: float) -> None:
@@ -182,9 +173,9 @@ class AreaNetwork(nn.Module):
         covariance += 0.01 * covariance.diagonal().diag()  # two lids are all but one control
         whiten = torch.linalg.inv(torch.linalg.cholesky(covariance))
         self.whiten.copy_(whiten)
-        distance = (moving @ whiten.T).norm(dim=1)
-        for bound, share in ((self.bound, BEYOND), (self.usual, unusual)):
-            bound.copy_(distance.kthvalue(math.ceil((1 - share) * len(distance))).values)
+        white = moving @ whiten.T
+        for bound, rows, share in ((self.bound, white, BEYOND), (self.usual, white[:, : controls.shape[1]], unusual)):
+            bound.copy_(rows.norm(dim=1).kthvalue(math.ceil((1 - share) * len(rows))).values)
 
     def config(self) -> dict[str, Any]:
         """Return what rebuilds this module."""
@@ -206,6 +197,19 @@ def _with_velocity(curves: Tensor) -> Tensor:
     """Return curves, (batch, n, frames), and below them how they change over four frames."""
     held = pad(curves, (2, 2), mode="replicate")
     return torch.cat([curves, held[..., 4:] - held[..., :-4]], dim=1)
+
+
+def _share(along: Tensor, begun: Tensor, bound: Tensor) -> Tensor:
+    """Return the largest share, (batch, 1, frames), of each frame's departure that leaves it within a bound.
+
+    Solves ``|begun + share * along| = radius``, both (batch, rows, frames) in the whitened space, where within the bound
+    is within a ball.
+    """
+    out = begun.square().sum(dim=1, keepdim=True).sqrt()
+    radius = torch.maximum(bound, out + ROOM * bound)
+    across, square = (along * begun).sum(dim=1, keepdim=True), along.square().sum(dim=1, keepdim=True)
+    reach = (across.square() + square * (radius - out) * (radius + out)).sqrt() - across
+    return torch.where(square > reach, reach / square, 1.0)
 
 
 def _median(curves: Tensor) -> Tensor:
