@@ -20,11 +20,11 @@ from engine.take import SHAPES, Array
 MEETING = tuple(CONTROL_INDEX[name] for name in ("lips_vertical", "eyelid_right", "eyelid_left"))
 AREA_OF = ("lower", "eyelids", "eyelids")
 SHUT_MM = 0.2  # nearer than this nothing is to be gained, and which way to move gets lost
-NEAR_MM, FAR_MM = 5.5, 8.0  # asked or reached: nearer than the first is about to touch, further than the second is open
+NEAR_MM, FAR_MM = 5.5, 7.0  # asked or reached: nearer than the first is about to touch, further than the second is open
 CLOSE_MM, APART_MM = 4.0, 8.0  # a face that misses by less is corrected; one that misses by more was mended on purpose
 ALIKE_MM, UNLIKE_MM = 3.0, 5.0  # so was one whose lids move together where the request's do not
 TEMPERED, WHOLE = 0.4, 0.7  # and one whose request had to be scaled down that much
-ROUNDS = 3
+ROUNDS, MET_MM = 3, 0.01
 FREE = np.isin(np.arange(len(SHAPES)), np.concatenate([area.shape_columns for area in AREAS if area.name in AREA_OF]))
 
 
@@ -59,7 +59,7 @@ def met(weights: Array, asked: Array, scale: Array, original: Array | None = Non
     share = _fade(np.minimum(wanted, reached), NEAR_MM, FAR_MM) * _fade(off, CLOSE_MM, APART_MM)
     share *= _fade(-scale, -WHOLE, -TEMPERED)
     share[:, 1:] *= _fade(unlike, ALIKE_MM, UNLIKE_MM)[:, None]
-    rows = (share > 0).any(axis=1)
+    rows = (np.abs(share * missed) > MET_MM).any(axis=1)
     landed = np.array(weights)
     if rows.any():
         target = (reached + share * missed)[rows]

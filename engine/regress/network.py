@@ -153,10 +153,9 @@ class AreaNetwork(nn.Module):
         away = controls - known
         moving = self.whiten @ _with_velocity(torch.cat([_median(away), away, known - self.centre]))
         lasting, moment, begun = moving.view(3, len(away), *moving.shape[1:])  # each (batch, 2 * controls, frames)
-        if original is None:
-            share = _share(lasting, begun, self.bound)
-        else:  # the first rows of the triangular `whiten` are of positions alone
-            share = _share(lasting[:, :count], begun[:, :count], self.usual)
+        # The first rows of the triangular `whiten` are of positions alone.
+        rows, bound = (2 * count, self.bound) if original is None else (count, self.usual)
+        share = _share(lasting[:, :rows], begun[:, :rows], bound)
         share = -max_pool1d(-share, 2 * LOOK + 1, stride=1, padding=LOOK)
         share = avg_pool1d(pad(share, (LOOK, LOOK), mode="replicate"), 2 * LOOK + 1, stride=1)
         share = torch.minimum(share, _share(moment, begun, self.bound))
