@@ -162,10 +162,15 @@ class Dragger:
         if moved.any():
             held = moved | (self._held[first:last] & moved.any(axis=1, keepdims=True))
             share = _contact(wanted, moved | _kept_together(moved), fps=self.take.fps)
-            fed = _followed(original, wanted, held) if follow else wanted
+            fed = _followed(original, self._within_reach(wanted, first), held) if follow else wanted
             weights = self._composite(original, fed + share * (wanted - fed), first, moved.any(axis=1))
             weights = _land(weights, wanted, np.maximum(share, held) if exact_curve else share)
         return Patch(first, weights, wanted, bundled_measurer().measure(weights))
+
+    def _within_reach(self, wanted: Array, first: int) -> Array:
+        """Return curves no further than people or the take went: what follows beyond that would bring the face back."""
+        own, (low, high) = self.controls[first : first + len(wanted)], self._regressor.limits
+        return np.clip(wanted, np.minimum(own, low), np.maximum(own, high))
 
     def _composite(self, weights: Array, wanted: Array, first: int, changed: np.ndarray) -> Array:
         change = self._change(wanted, first)

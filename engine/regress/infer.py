@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -50,6 +50,16 @@ class Regressor:
         self.networks = networks
         for network in networks.values():
             network.eval()
+
+    @cached_property
+    def limits(self) -> tuple[Array, Array]:
+        """The lowest and the highest that each of the eight controls, in mm, was recorded at."""
+        low, high = np.full(len(CONTROLS), -np.inf), np.full(len(CONTROLS), np.inf)
+        for area in self._areas(extended=False):
+            network = self.networks[area.name]
+            low[area.control_columns] = np.maximum(low[area.control_columns], network.low.numpy().ravel())
+            high[area.control_columns] = np.minimum(high[area.control_columns], network.high.numpy().ravel())
+        return low, high
 
     def infer(
         self,
