@@ -19,9 +19,9 @@ def main() -> int:
 
 
 def _window(path: Path | None) -> int:
-    from app import window
+    from app.window.start import start
 
-    return window.start(path)
+    return start(path)
 
 
 if __name__ == "__main__":

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtWidgets import QCheckBox, QPushButton, QSpinBox
 
-from app.inference import Inference
-from app.section import Section, quiet, slider
 from app.session import Change, Session
+from app.session.inference import Inference
+from app.widgets.section import Section, quiet, slider
 
 if TYPE_CHECKING:
     from engine.editing import Dragger, Patch

@@ -32,7 +32,7 @@ def build() -> typer.Typer:
 
 def _tell_version(wanted: bool) -> None:
     if wanted:
-        from app.about import describe
+        from app.dialogs.about import describe
 
         print(describe())
         raise typer.Exit

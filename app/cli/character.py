@@ -135,7 +135,8 @@ def drive(
 
     from app.cli.spacetime import _source
     from engine.formats import markers_layout
-    from engine.formats.characters.animation import MovingMesh, write
+    from engine.formats.characters.animation import write
+    from engine.formats.characters.moving import MovingMesh
     from engine.manifold.drive import MeshDriver, aim
     from engine.spacetime.layout import standard
 

@@ -154,7 +154,8 @@ def _tell(listener: Listener, seconds: float | None, spool: Spool | None, *, as_
             print(json.dumps({**told, "latency_p95_ms": latency}), flush=True)
         else:
             drops = ", ".join(f"{count} {reason}" for reason, count in status.drops.items()) or "none dropped"
-            console.print(f"{status.frames} frames, {drops}, p95 {latency} ms", highlight=False)
+            late = "" if latency is None else f", p95 {latency} ms"
+            console.print(f"{status.frames} frames, {drops}{late}", highlight=False)
 
 
 def replay(

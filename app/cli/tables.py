@@ -56,7 +56,7 @@ def evaluate(
 
 def bench(as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False) -> None:
     """Measure how fast everything is on this machine, each figure beside its goal."""
-    from app.bench import measure
+    from app.bench.measure import measure
 
     show("bench", measure(lambda line: errors.print(line, style="dim")), as_json=as_json)
 

@@ -7,11 +7,11 @@ import pyqtgraph as pg
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QPainter
 
-from app.curve_table import CURVES, FIRST_WEIGHT
 from app.curves import removed
 from app.curves.line import Line
 from app.curves.peaks import Rows, Thinned
 from app.curves.removed import Removed
+from app.session.curve_table import CURVES, FIRST_WEIGHT
 from app.theme import GRID, Palette
 from engine.take import Array, Mask
 

@@ -13,37 +13,50 @@ from app.theme import Palette
 Marks = list[tuple[float, float]]  # half-open ranges of frames
 
 
-class Underlay(QGraphicsItem):
-    """Tints and hatches behind the curves.
+class Overlay(QGraphicsItem):
+    """Covers all lanes; draws nothing until it has a theme's colours.
 
     Parameters
     ----------
     area : gives the box of all lanes in the scene
     x_of : scene position of a frame
+    depth : over the lanes where it is above zero, under them below
     """
 
-    def __init__(self, area: Callable[[], QRectF], x_of: Callable[[float], float]) -> None:
+    def __init__(self, area: Callable[[], QRectF], x_of: Callable[[float], float], depth: int) -> None:
         super().__init__()
         self._area, self._x_of = area, x_of
-        self.spans: Marks = []
-        self.selection: tuple[float, float] | None = None
-        self.brush_reach: tuple[float, float] | None = None
-        self.brush_box = QRectF()
         self.colours: Palette | None = None
-        self.setZValue(-10)
+        self.setZValue(depth)
 
     def boundingRect(self) -> QRectF:
         """Cover all lanes."""
         return self._area()
 
     def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        """Draw in the theme's colours."""
+        if self.colours is not None:
+            self._draw(painter, self._area(), self.colours)
+
+    def _draw(self, painter: QPainter, area: QRectF, colours: Palette) -> None:
+        raise NotImplementedError
+
+
+class Underlay(Overlay):
+    """Tints and hatches behind the curves."""
+
+    def __init__(self, area: Callable[[], QRectF], x_of: Callable[[float], float]) -> None:
+        super().__init__(area, x_of, -10)
+        self.spans: Marks = []
+        self.selection: tuple[float, float] | None = None
+        self.brush_reach: tuple[float, float] | None = None
+        self.brush_box = QRectF()
+
+    def _draw(self, painter: QPainter, area: QRectF, colours: Palette) -> None:
         """Draw spans hatched and tinted, the selection and the brush tinted."""
-        if self.colours is None:
-            return
-        area = self._area()
         painter.setClipRect(area)
         painter.setPen(Qt.PenStyle.NoPen)
-        hatch, tint = QColor(self.colours.warning), QColor(self.colours.warning)
+        hatch, tint = QColor(colours.warning), QColor(colours.warning)
         hatch.setAlphaF(0.22)
         tint.setAlphaF(0.05)
         for span in self.spans:
@@ -51,12 +64,12 @@ class Underlay(QGraphicsItem):
             if box.right() >= area.left() and box.left() <= area.right():
                 painter.fillRect(box, tint)
                 painter.fillRect(box, QBrush(hatch, Qt.BrushStyle.BDiagPattern))
-        chosen = QColor(self.colours.text)
+        chosen = QColor(colours.text)
         chosen.setAlphaF(0.07)
         if self.selection is not None:
             painter.fillRect(self._box(self.selection, area), chosen)
         if self.brush_reach is not None:
-            reach = QColor(self.colours.accent)
+            reach = QColor(colours.accent)
             reach.setAlphaF(0.09)
             painter.fillRect(self._box(self.brush_reach, self.brush_box), reach)
 
@@ -65,33 +78,23 @@ class Underlay(QGraphicsItem):
         return QRectF(left, area.top(), max(1.0, right - left), area.height())
 
 
-class Playhead(QGraphicsItem):
+class Playhead(Overlay):
     """A line through every lane at the frame that is shown, and the box and handles of the tool at work."""
 
     def __init__(self, area: Callable[[], QRectF], x_of: Callable[[float], float]) -> None:
-        super().__init__()
-        self._area, self._x_of = area, x_of
+        super().__init__(area, x_of, 10)
         self.frame = 0
         self.box, self.handles = QRectF(), list[QPointF]()
-        self.colours: Palette | None = None
-        self.setZValue(10)
 
-    def boundingRect(self) -> QRectF:
-        """Cover all lanes."""
-        return self._area()
-
-    def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+    def _draw(self, painter: QPainter, area: QRectF, colours: Palette) -> None:
         """Draw the line where the frame is on screen, then the box of a tool."""
-        if self.colours is None:
-            return
-        area = self._area()
         x = self._x_of(self.frame)
         if area.left() <= x <= area.right():
-            painter.setPen(QPen(QColor(self.colours.text), 1))
+            painter.setPen(QPen(QColor(colours.text), 1))
             painter.drawLine(QLineF(x, area.top(), x, area.bottom()))
         if not self.box.isNull():
-            painter.setPen(QPen(QColor(self.colours.accent), 1, Qt.PenStyle.DashLine))
+            painter.setPen(QPen(QColor(colours.accent), 1, Qt.PenStyle.DashLine))
             painter.drawRect(self.box)
-            painter.setBrush(QColor(self.colours.accent))
+            painter.setBrush(QColor(colours.accent))
             for handle in self.handles:
                 painter.drawRect(QRectF(handle.x() - 4, handle.y() - 4, 8, 8))

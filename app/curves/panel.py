@@ -12,8 +12,8 @@ from app.curves.overlay import Playhead, Underlay
 from app.curves.peaks import on_screen
 from app.curves.tools import make_tools
 from app.curves.tools.base import Tool
-from app.inference import Inference
 from app.session import Change, Session
+from app.session.inference import Inference
 from app.theme import GRID, Palette
 
 ACTIVE_STRETCH, STRETCH = 24, 10

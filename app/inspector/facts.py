@@ -6,10 +6,10 @@ import numpy as np
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QLabel, QPushButton
 
-from app.commands import EditCommand
-from app.curve_table import CURVES
-from app.section import Section, quiet
 from app.session import Change, Session
+from app.session.commands import EditCommand
+from app.session.curve_table import CURVES
+from app.widgets.section import Section, quiet
 from engine.controls import bundled_measurer
 from engine.exact import shortfalls
 from engine.take import Array

@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
-from app.section import Section, quiet
 from app.session import MAX_OFFSET_S, MEDIA, Change, Session
+from app.widgets.section import Section, quiet
 from engine.project import name_of
 
 WORDS = {"audio": "Sound", "video": "Video"}

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QAbstractSpinBox, QFrame, QLineEdit, QScrollArea, QVBoxLayout, QWidget
 
-from app.section import Section
 from app.session import Change, Session
 from app.theme import GRID
+from app.widgets.section import Section
 
 WIDTH_PX = 248
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QPushButton
 
-from app.section import Section, slider
 from app.session import Change, Session
+from app.widgets.section import Section, slider
 
 FIRST_CUTOFF_HZ = 6.0
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QPushButton
 
-from app.curve_table import CURVES
-from app.section import Section
 from app.session import Change, Session
+from app.session.curve_table import CURVES
+from app.widgets.section import Section
 from engine.controls import CONTROLS
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox
 
-from app.section import Section, quiet, slider
 from app.session import Change, Session
+from app.widgets.section import Section, quiet, slider
 from engine.errors import EngineError
 
 if TYPE_CHECKING:

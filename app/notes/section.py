@@ -8,9 +8,9 @@ from datetime import UTC, datetime
 
 from PySide6.QtWidgets import QLineEdit, QPushButton, QSizePolicy, QVBoxLayout
 
-from app.commands import MarkCommand
-from app.section import Section
 from app.session import Change, Session
+from app.session.commands import MarkCommand
+from app.widgets.section import Section, empty
 from engine.project import Note
 from engine.take import timecode
 
@@ -58,10 +58,7 @@ class NotesSection(Section):
             self._show()
 
     def _show(self) -> None:
-        while (item := self._list.takeAt(0)) is not None:
-            if (old := item.widget()) is not None:
-                old.hide()
-                old.deleteLater()
+        empty(self._list)
         fps = self.session.take.fps
         for note in self.session.marks.notes[:SHOWN]:
             shown = note.text if len(note.text) < 20 else f"{note.text[:18]}…"

@@ -9,10 +9,10 @@ import numpy as np
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QLineEdit, QPushButton, QSlider, QSpinBox
 
-from app.inference import Inference
-from app.section import Section, quiet
 from app.session import Change, Session
-from app.weight_sliders import WeightSliders
+from app.session.inference import Inference
+from app.widgets.section import Section, quiet
+from app.widgets.weight_sliders import WeightSliders
 from engine.project import Pin
 
 if TYPE_CHECKING:
@@ -40,6 +40,8 @@ class PinsSection(Section):
         self._pose: dict[str, float] = {}  # the weights that were moved
         self._solver: PinSolver | None = None
         self._solver_for: tuple[object, ...] = ()
+        self.hint = quiet("Move a slider: the pose is met at the playhead and eases out over the range.")
+        self.column.addWidget(self.hint)
         self.before, self.after = QSpinBox(), QSpinBox()
         for box in (self.before, self.after):
             box.setRange(0, 5000)
@@ -57,8 +59,6 @@ class PinsSection(Section):
         self.side_by_side(self.keep_button, self.drop_button)
         self.keep_button.clicked.connect(self.keep)
         self.drop_button.clicked.connect(self.drop)
-        self._hint = quiet("Move a slider: the pose is met at the playhead and eases out over the range.")
-        self.column.addWidget(self._hint)
         session.changed.connect(self._on_change)
         self._reset_range()
         self._show_sliders()

@@ -10,13 +10,13 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.background import LatestWins
-from app.commands import MarkCommand
 from app.playback.clock import AudioClock, Sink, WallClock
 from app.playback.device import open_device
+from app.playback.transport import Transport
 from app.playback.video import Video
 from app.session import MEDIA, Change, Session
+from app.session.commands import MarkCommand
 from app.settings import Settings
-from app.transport import Transport
 from engine import project
 from engine.formats import audio, film
 from engine.project import ENDING, Found

@@ -17,6 +17,7 @@ def _direction(*axis: float) -> Floats:
 
 
 KEY, FILL, RIM = _direction(-0.5, 0.6, 1.0), _direction(0.9, 0.1, 0.5), _direction(0.35, 0.45, -1.0)
+EYE_LIGHT = _direction(-0.32, 0.38, 1.0)  # nearer to the eye than the key, or the lids would cover its mirror image
 WARM, COOL = np.array([1.0, 0.96, 0.91], np.float32), np.array([0.78, 0.88, 1.0], np.float32)
 
 
@@ -32,9 +33,10 @@ class Lighting:
     Parameters
     ----------
     character : whose triangles carry the light; normals are summed over them by one sparse product
+    wet : the vertices of eyeballs, in which the light is mirrored
     """
 
-    def __init__(self, character: Character) -> None:
+    def __init__(self, character: Character, wet: npt.NDArray[np.int64] | None = None) -> None:
         # here and not above: scipy takes a third of a second to load, and the window should be seen first
         from scipy import sparse
 
@@ -43,6 +45,7 @@ class Lighting:
         corners = (np.ones(3 * faces, np.float32), (character.triangles.ravel(), np.repeat(np.arange(faces), 3)))
         self._gather = sparse.csr_matrix(corners, shape=(vertices, faces))
         self._linear = to_linear(character.colours)
+        self._wet = np.zeros(0, np.int64) if wet is None else wet
         grid = np.linspace(0.0, 1.0, _STEPS)
         encoded = np.where(grid <= 0.0031308, 12.92 * grid, 1.055 * grid ** (1 / 2.4) - 0.055)
         self._to_srgb = encoded.astype(np.float32)
@@ -74,7 +77,15 @@ class Lighting:
         sky = 0.24 + 0.16 * normals[:, 1]
         half = view + KEY
         half /= np.sqrt(np.einsum("vx,vx->v", half, half))[:, None]
-        shine = np.clip(np.einsum("vx,vx->v", normals, half), 0.0, 1.0) ** 24
+        shine = 0.07 * np.clip(np.einsum("vx,vx->v", normals, half), 0.0, 1.0) ** 24
+        shine[self._wet] = _glint(normals[self._wet], view[self._wet])
         light = 0.92 * key[:, None] * WARM + 0.20 * fill[:, None] * COOL + sky[:, None] + 0.75 * rim[:, None] * COOL
-        lit = (self._linear if linear is None else linear) * light + 0.07 * shine[:, None]
+        lit = (self._linear if linear is None else linear) * light + shine[:, None]
         return np.asarray(self._to_srgb[(np.clip(lit, 0.0, 1.0) * (_STEPS - 1)).astype(np.int32)], np.float32)
+
+
+def _glint(normals: Floats, view: Floats) -> Floats:
+    """Return the light mirrored in wet eyes, (n,): a face without one looks blind."""
+    half = view + EYE_LIGHT
+    half /= np.sqrt(np.einsum("vx,vx->v", half, half))[:, None]
+    return np.asarray(0.9 * np.clip(np.einsum("vx,vx->v", normals, half), 0.0, 1.0) ** 220, np.float32)

@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QPainter, QPen
 
 from app.preview.camera import Camera
 from app.preview.picking import View, facing, places, views
-from app.sides import Dot, Side
+from app.session.sides import Dot, Side
 from app.theme import GRID
 from engine.take import Array, Mask
 

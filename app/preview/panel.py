@@ -21,14 +21,14 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.inference import Inference
 from app.preview.camera import PRESETS, Camera
 from app.preview.overlay import Overlay
 from app.preview.picking import vertex_under
 from app.preview.renderer import GROUND, HEAT, HEAT_FULL_MM, Picture, Shot
 from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
-from app.sides import Side
+from app.session.inference import Inference
+from app.session.sides import Side
 from app.theme import GRID
 from engine.character import Character, bundled
 from engine.take import Array

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from app.preview.camera import FIELD_OF_VIEW_DEG, Camera
 from app.preview.lighting import Lighting
 from app.preview.renderer import framed
-from app.sides import Side
+from app.session.sides import Side
 from engine import character
 from engine.character import Character, drawable
 from engine.take import Array, Mask

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from app.preview.camera import FIELD_OF_VIEW_DEG, Camera
 from app.preview.lighting import Lighting, to_linear
+from app.preview.parts import eyeballs, part_of, shell_and_rest
 from engine.character import Character
 from engine.errors import EngineError
 from engine.take import Array
@@ -71,13 +72,14 @@ class _Stage:
 
     def __init__(self, character: Character, scene: Any) -> None:
         pyrender = _pyrender()
-        self.character, self._lighting, self._scene = character, Lighting(character), scene
+        part = part_of(character)
+        self.character, self._lighting, self._scene = character, Lighting(character, eyeballs(character, part)), scene
         neutral = character.neutral
         self.low, self.high = framed(character)
         height = self.high[1] - self.low[1]
         rise = (neutral[:, 1] - (self.low[1] - NECK_FADE / 2 * height)) / (NECK_FADE * height)
         self._solid = np.clip(rise, 0.0, 1.0)[:, None].astype(np.float32)
-        closed, open_ = _split(character)
+        closed, open_ = shell_and_rest(character, part)
         self._primitives = [
             pyrender.Primitive(
                 positions=neutral.astype(np.float32),
@@ -200,28 +202,6 @@ class Renderer:
     def close(self) -> None:
         """Give back what OpenGL holds."""
         self._target.delete()
-
-
-def _split(character: Character) -> tuple[Triangles, Triangles]:
-    """Return the triangles of the largest part, whose insides need not be drawn, and all others.
-
-    Leaving out what faces away saves a third of the time on software GL. A part that is wound inwards would vanish,
-    and small parts such as brows and lashes are sheets that are seen from both sides: those are drawn whole.
-    """
-    from scipy import sparse
-    from scipy.sparse.csgraph import connected_components
-
-    triangles, vertices = character.triangles, character.neutral.astype(np.float64)
-    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]]])
-    links = sparse.coo_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(vertices),) * 2)
-    _, part = connected_components(links, directed=False)
-    of_triangle = part[triangles[:, 0]]
-    largest = of_triangle == np.bincount(of_triangle).argmax()
-    corners = vertices[triangles[largest]] - vertices.mean(axis=0)
-    volume = np.einsum("tx,tx->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
-    if volume <= 0:
-        largest[:] = False
-    return triangles[largest], triangles[~largest]
 
 
 def framed(character: Character) -> tuple[Array, Array]:

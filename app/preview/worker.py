@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from app.background import LatestWins
 from app.preview.renderer import Picture, Renderer, Shot
-from app.sides import Side
+from app.session.sides import Side
 from engine import character
 from engine.character import Character
 

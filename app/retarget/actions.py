@@ -14,8 +14,8 @@ from app.retarget.placing import Placing
 from app.retarget.retargeting import Retargeting
 from app.retarget.section import RetargetSection
 from app.retarget.sides import sides
-from app.section import Section
 from app.session import Session
+from app.widgets.section import Section
 from engine.errors import EngineError
 
 HEADS = "Heads (*.npz *.glb *.gltf *.obj)"

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -94,6 +94,14 @@ class Carried:
         """Return the weights of a frame, (52,), where it is among them."""
         inside = self.start <= frame < self.start + len(self.take)
         return np.asarray(self.take.weights[frame - self.start]) if inside else None
+
+
+@dataclass(frozen=True, eq=False)
+class Errand:
+    """Work for a background thread, and who gets what it returns."""
+
+    work: Callable[[], Any]
+    then: Callable[[Any], None]
 
 
 class Carrier:

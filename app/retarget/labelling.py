@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from app.retarget.carry import Pose, points_of
-from app.retarget.retargeting import Retargeting
+from app.retarget.retargeting import LABELS, Retargeting
 from app.session import Session
 from engine.errors import EditError
 from engine.formats import labels as files
@@ -71,12 +71,18 @@ class Labelling:
         state.submit(work, state.propose)
 
     def read(self, path: Path) -> None:
-        """Read labels; raises `EngineError`."""
-        stored, frames = files.read(path), len(self._session.take)
+        """Read labels, and open the head that they are for where the file names one; raises `EngineError`."""
+        stored, frames, state = files.read(path), len(self._session.take), self._retargeting
         outside = [frame for frame in stored.labels if frame >= frames]
         if outside:
             raise EditError(f"{path.name} labels frame {outside[0]}; the take has {frames} frames.")
-        self._change(stored.labels, f"read {path.name}")
+        if state.method != LABELS:
+            state.use(method=LABELS)
+        known = state.target.path
+        if stored.target is None or (known is not None and known.absolute() == stored.target.absolute()):
+            self._change(stored.labels, f"read {path.name}")
+        else:
+            state.choose_target(stored.target, stored.labels)
 
     def write(self, path: Path) -> None:
         """Write labels; raises `EngineError`."""

@@ -7,9 +7,9 @@ from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
 from app.retarget.labelling import Labelling
 from app.retarget.retargeting import Retargeting
-from app.section import quiet
 from app.session import Session
-from app.weight_sliders import WeightSliders
+from app.widgets.section import empty, quiet
+from app.widgets.weight_sliders import WeightSliders
 from engine.take import timecode
 
 SHOWN = 10
@@ -89,10 +89,7 @@ class LabelsBox(QWidget):
             button.setText(f"{timecode(frame / fps, fps)}  {frame} · {state}")
 
     def _lay_out_list(self, frames: list[int]) -> None:
-        while (item := self._list.takeAt(0)) is not None:
-            if (old := item.widget()) is not None:
-                old.hide()
-                old.deleteLater()
+        empty(self._list)
         self.frames = {}
         for frame in frames[:SHOWN]:
             button = self.frames[frame] = QPushButton()

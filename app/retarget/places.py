@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QCheckBox, QListWidget, QListWidgetItem, QPushButt
 
 from app.retarget.placing import Placing
 from app.retarget.retargeting import Retargeting
-from app.section import Section, quiet
 from app.session import Session
+from app.widgets.section import Section, quiet
 
 LIST_PX = 190
 

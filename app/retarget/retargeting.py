@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,19 +12,10 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.commands import EditCommand
-from app.retarget.carry import (
-    Carried,
-    Carrier,
-    Carry,
-    Performance,
-    Stopped,
-    Target,
-    opened,
-    posed,
-)
+from app.retarget.carry import Carried, Carrier, Carry, Errand, Performance, Pose, Stopped, Target, opened, posed
 from app.retarget.commands import TargetCommand
 from app.session import Change, Session
+from app.session.commands import EditCommand
 from engine.character import Character, bundled
 from engine.formats import markers
 from engine.spacetime.layout import MARKERS
@@ -38,14 +30,6 @@ BEFORE_FRAMES, AFTER_FRAMES = 8, 24  # of the playhead, that are carried live: p
 AHEAD_FRAMES = 12  # how near the end of what is known the playhead may come before more is asked for
 MOVEMENT, LABELS = "movement", "labels"
 KIND = "retarget"  # of the edits that put a take on another head
-
-
-@dataclass(frozen=True, eq=False)
-class Errand:
-    """Work for a background thread, and who gets what it returns."""
-
-    work: Callable[[], Any]
-    then: Callable[[Any], None]
 
 
 class Retargeting(QObject):
@@ -73,6 +57,8 @@ class Retargeting(QObject):
     progress = Signal(float)
     failed = Signal(str, str)
     capture_opened = Signal(object)  # a Take of the capture's length
+    head_read = Signal(object)  # the head to show the take on, or None for the bundled one
+    told = Signal(str)  # what is being read, or nothing
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -94,8 +80,10 @@ class Retargeting(QObject):
         self._whole, self._short = (LatestWins(_run, name=name) for name in ("retarget", "retarget live"))
         for thread in (self._whole, self._short):
             thread.done.connect(self._deliver)
-            thread.failed.connect(self._refused)
+        self._whole.failed.connect(self._refused)
+        self._short.failed.connect(self._short_refused)
         self.progress.connect(self._advance)
+        self._offered: Character | None = None
         self._heads: dict[str, Character | None] = {"": None}  # by path; the bundled one has none
         session.changed.connect(self._on_change)
         session.undo.indexChanged.connect(self._follow)
@@ -165,10 +153,25 @@ class Retargeting(QObject):
         if self._capture_path is not None:
             self.open_markers(self._capture_path, frame)
 
-    def choose_target(self, path: Path | None) -> None:
-        """Carry to the head in a file or folder; None is the bundled one."""
+    def choose_target(self, path: Path | None, labels: Mapping[int, Pose] | None = None) -> None:
+        """Carry to the head in a file or folder, with labels that are known for it; None is the bundled one."""
         name = path.name if path else bundled().name
-        self._open(name, lambda: opened(path), lambda target: self.change_target(target, f"carry to {name}"))
+        labelled = partial(replace, labels=labels or {})
+        self._open(name, lambda: opened(path), lambda target: self.change_target(labelled(target), f"carry to {name}"))
+
+    def show_on(self, path: Path | None) -> None:
+        """Read a head to show the take on, None for the bundled one; it is the target where the user chose no other."""
+        self.told.emit(f"reading {path.name}…" if path else "")
+        self._short.submit(Errand(lambda: opened(path) if path else Target(), self._take_shown), "head")
+
+    def _take_shown(self, offer: Target) -> None:
+        self.told.emit("")
+        self.head_read.emit(offer.head)
+        target = self.target
+        touched = target.head is not self._offered or target.labels or target.by_hand or self.result is not None
+        if target.head is None or not touched:
+            self._offered = offer.head
+            self._put(offer)
 
     def _open(self, name: str, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
         self.cancel()
@@ -358,6 +361,10 @@ class Retargeting(QObject):
         self._solving, self.share, self.opening = None, None, ""
         self.failed.emit(sentence, advice)
         self.changed.emit()
+
+    def _short_refused(self, request: object, sentence: str, advice: str) -> None:
+        self.told.emit("")
+        self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:

@@ -9,8 +9,8 @@ from app.retarget.labelling import Labelling
 from app.retarget.labels import LabelsBox
 from app.retarget.retargeting import LABELS, MOVEMENT, Retargeting
 from app.retarget.strengths import StrengthSliders
-from app.section import Section, quiet
 from app.session import Session
+from app.widgets.section import Section, quiet
 
 METHODS = {"Match the movement": MOVEMENT, "From a few labels": LABELS}
 
@@ -42,10 +42,10 @@ class RetargetSection(Section):
         self.rest_frame.setToolTip("A frame of the capture in which the face is at rest")
         self.rest_frame.valueChanged.connect(retargeting.measure_from)
         self.target_button, self.folder_button = QPushButton("Head…"), QPushButton("Folder…")
-        self.bundled_button = QPushButton("Own")
+        self.bundled_button = QPushButton("Retake's own head")
         self.target_button.setToolTip("A character file, glTF or GLB, OBJ, or a packed ICT-FaceKit")
         self.folder_button.setToolTip("A folder with one OBJ file for each shape")
-        self.bundled_button.setToolTip("Retake's own head")
+        self.bundled_button.setToolTip("The head that comes with Retake, which every take is first shown on")
         self.column.addWidget(self._source)
         self.column.addWidget(self.markers_button)
         self._rest = QWidget()
@@ -55,7 +55,8 @@ class RetargetSection(Section):
         rest.addWidget(self.rest_frame)
         self.column.addWidget(self._rest)
         self.column.addWidget(self._target)
-        self.side_by_side(self.target_button, self.folder_button, self.bundled_button)
+        self.side_by_side(self.target_button, self.folder_button)
+        self.column.addWidget(self.bundled_button)
         self.method = QComboBox()
         self.method.addItems(list(METHODS))
         self.method.setAccessibleName("Method")
@@ -89,7 +90,7 @@ class RetargetSection(Section):
         self.column.addWidget(self._facts)
         self.save_button, self.read_button = QPushButton("Save…"), QPushButton("Read…")
         self.save_button.setToolTip("Write the labels to a file")
-        self.read_button.setToolTip("Read labels from a file")
+        self.read_button.setToolTip("Read labels from a file; the head that it names is opened too")
         self.side_by_side(self.save_button, self.read_button)
 
     def show_all(self) -> None:

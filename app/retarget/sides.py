@@ -10,7 +10,7 @@ import numpy as np
 from app.retarget.carry import Target
 from app.retarget.retargeting import LABELS, Retargeting
 from app.session import Session
-from app.sides import Dot, Side
+from app.session.sides import Dot, Side
 from engine.character import Character, bundled
 from engine.errors import EditError
 from engine.spacetime.layout import standard

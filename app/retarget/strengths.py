@@ -8,7 +8,7 @@ import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QSlider, QWidget
 
-from app.section import quiet, slider
+from app.widgets.section import quiet, slider
 from engine.spacetime.matching import Matching
 
 STEPS = 50  # on either side of the middle; the lowest is none at all

@@ -9,8 +9,8 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.commands import EditCommand
 from app.session import Change, Session
+from app.session.commands import EditCommand
 from engine.controls import CONTROLS
 from engine.project import Span
 from engine.speech.visemes import Cue

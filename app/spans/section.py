@@ -17,11 +17,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.commands import MarkCommand
-from app.section import Section, quiet
 from app.session import Change, Session
+from app.session.commands import MarkCommand
 from app.spans.filling import Filling
 from app.spans.strip import Strip
+from app.widgets.section import Section, empty, quiet
 from engine.errors import EngineError
 from engine.formats import read_take
 from engine.project import Span
@@ -198,10 +198,7 @@ class SpansSection(Section):
             self._show()
 
     def _show_list(self) -> None:
-        while (item := self._list.takeAt(0)) is not None:
-            if (old := item.widget()) is not None:
-                old.hide()
-                old.deleteLater()
+        empty(self._list)
         spans, fps, chosen = self.session.marks.spans, self.session.take.fps, self.chosen
         for span in spans[:SHOWN_SPANS]:
             kind = "lost" if span.kind == "lost" else "marked"

@@ -10,8 +10,8 @@ from PySide6.QtCore import QObject, QPoint, Qt, Signal
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QPainter
 from PySide6.QtWidgets import QLineEdit, QMenu, QWidget
 
-from app.commands import VisemesCommand
 from app.session import Session
+from app.session.commands import VisemesCommand
 from app.theme import Palette
 from app.timeline.visemes import EDGE_PX, Place, VisemeStrip, choices, describe, icon
 from engine.errors import EditError, EngineError

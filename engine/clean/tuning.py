@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import torch
 
+from engine.clean.batches import Settings, make_batch, training_pieces
 from engine.clean.material import CHANGING, Spoilt, spoil
 from engine.clean.rivals import Estimate, FullyConnected, Rival, Trees, features, targets
-from engine.clean.train import Settings, make_batch, training_pieces
 from engine.corpus import split
 from engine.errors import EngineError
 from engine.evaluate.filters import Filter, Kalman, OneEuro, savgol

@@ -2,55 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from engine.errors import EditError, FormatError
-from engine.take import Array
+from engine.formats import markers_c3d, markers_csv, markers_trc
+from engine.formats.capture import TO_MM, Markers
 
 ENDINGS = (".csv", ".tsv", ".trc", ".c3d")
-FARTHEST_MM = 1e8
-SLOWEST_FPS, FASTEST_FPS = 0.01, 10_000.0
-TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
-
-
-@dataclass(frozen=True, eq=False)
-class Markers:
-    """A capture: where each marker is in each frame.
-
-    Attributes
-    ----------
-    positions : (frames, n, 3) float64 mm; NaN where a marker was not seen
-    names : of the markers, each once
-    fps : frames per second
-    name : what to call the capture on screen
-    notices : sentences about the import that the user should see
-    """
-
-    positions: Array
-    names: tuple[str, ...]
-    fps: float
-    name: str = "untitled"
-    notices: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        if self.positions.ndim != 3 or self.positions.shape[1:] != (len(self.names), 3) or not len(self.positions):
-            raise EditError("A capture needs at least one frame and three coordinates for each marker.")
-        twice = [name for index, name in enumerate(self.names) if name in self.names[:index]]
-        if twice:
-            raise EditError(f"The marker {twice[0]!r} is there twice.", "Rename or remove one of the two.")
-        if (np.abs(self.positions) > FARTHEST_MM).any():
-            raise EditError("A marker is further away than a face can be.", "Check the unit of the file.")
-        if not SLOWEST_FPS <= self.fps <= FASTEST_FPS:
-            raise EditError(
-                f"A capture needs a frame rate above zero and below {FASTEST_FPS:,.0f}; this one has {self.fps:g}.",
-                "Export it again with its rate.",
-            )
-
-    def __len__(self) -> int:
-        return len(self.positions)
 
 
 def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Markers:
@@ -66,8 +24,6 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     ------
     FormatError : with file and, where known, row and column
     """
-    from engine.formats import markers_c3d, markers_csv, markers_trc
-
     if unit is not None and unit not in TO_MM:
         raise FormatError(f"{unit!r} is not a unit of length.", f"Use one of: {', '.join(TO_MM)}.")
     readers = {".csv": markers_csv.read, ".tsv": markers_csv.read, ".trc": markers_trc.read, ".c3d": markers_c3d.read}
@@ -81,17 +37,7 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
 
 def write(markers: Markers, path: Path) -> None:
     """Write a capture as CSV or TRC, by the file's ending; raises `FormatError` for another."""
-    from engine.formats import markers_csv, markers_trc
-
     writers = {".csv": markers_csv.write, ".trc": markers_trc.write}
     if path.suffix.lower() not in writers:
         raise FormatError(f"Markers cannot be written to {path.name}.", "Use .csv or .trc.")
     writers[path.suffix.lower()](markers, path)
-
-
-def unit_by_size(positions: Array) -> tuple[str, str]:
-    """Return the unit in which markers, (frames, n, 3), are as large as a face, and a sentence that says so."""
-    low, high = np.nanmin(positions, axis=1), np.nanmax(positions, axis=1)
-    extent = float(np.nanmedian((high - low).max(axis=1)))
-    unit = "m" if extent < 1.5 else "cm" if extent < 45 else "mm"
-    return unit, f"Positions were taken as {unit}: the markers span {extent:.3g} of them."

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from engine.errors import FormatError
+from engine.formats.capture import TO_MM, Markers
 from engine.formats.content import require_file, unread
-from engine.formats.markers import TO_MM, Markers
 
 EXPECTED = "Retake reads C3D files with labelled points."
 HEADER_BYTES = 512

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
-from engine.formats.markers import TO_MM, Markers, unit_by_size
+from engine.formats.capture import TO_MM, Markers, unit_by_size
 from engine.formats.markers_text import decoded, lines_of, numbers
 from engine.take import Array
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
-from engine.formats.markers import TO_MM, Markers
+from engine.formats.capture import TO_MM, Markers
 from engine.formats.markers_text import decoded, lines_of, numbers
 
 EXPECTED = "A TRC file begins with PathFileType and names its rate, units and markers in the lines below."

@@ -140,7 +140,10 @@ def _require_usable(rest: Array, points: Indices) -> None:
         raise EditError(f"A feature point names vertex {points.max()}; the mesh has {len(rest)}.")
     values, counts = np.unique(points, return_counts=True)
     if counts.max() > 1:
-        raise EditError(f"Vertex {values[counts.argmax()]} is a feature point twice.")
+        raise EditError(
+            f"Vertex {values[counts.argmax()]} is a feature point twice.",
+            "Give each point a vertex of its own; on a mesh with few vertices, name fewer points in a marker,vertex file.",
+        )
     spread = np.linalg.svd(rest[points] - rest[points].mean(axis=0), compute_uv=False)
     if spread[2] < 1e-6 * spread[0]:
         raise EditError(

@@ -13,6 +13,9 @@ from engine.modelling.lips import outward
 from engine.modelling.solids import smooth_step
 from engine.take import Array
 
+# Where the upper teeth begin and end about the arch's middle: two broad incisors, a narrow one, a canine, two molars.
+UPPER_DEGREES = (0.0, 16.5, 29.0, 41.0, 51.0, 60.0, 66.0)
+
 
 @dataclass(frozen=True)
 class Part:
@@ -77,13 +80,9 @@ def eyeball() -> Part:
 
 
 def teeth(contact: Array, *, upper: bool) -> Part:
-    """Return a row of twelve teeth with gums, following the lips' contact line, (n, 3) from right to left."""
+    """Return a row of twelve teeth with gums, behind the lips' contact line, (n, 3) from right to left."""
     columns, middle_y = 61, contact[len(contact) // 2, 1]
-    away = outward(contact)
-    arch = contact - away * (0.86 if upper else 0.98)
-    place, along = np.linspace(0, 1, len(arch)), np.linspace(0.03, 0.97, columns)
-    arch = np.column_stack([np.interp(along, place, arch[:, axis]) for axis in range(3)])
-    away = np.column_stack([np.interp(along, place, away[:, axis]) for axis in range(3)])
+    arch, away = _upper_arch(contact, columns) if upper else _lower_arch(contact, columns)
     tooth = np.abs(np.sin(np.pi * np.arange(columns) / 5))[:, None] ** 0.35  # five columns each
     sign, edge = (1.0, -0.11) if upper else (-1.0, -0.03)
     # height above the edge, how far forward, whether it is gum
@@ -93,12 +92,35 @@ def teeth(contact: Array, *, upper: bool) -> Part:
         row = arch + away * (forward * (0.6 + 0.4 * tooth))
         row[:, 1] = middle_y + edge + sign * height
         points.append(row)
-        tint = np.array(colours.TOOTH) * (0.80 + 0.20 * tooth)
+        tint = np.array(colours.TOOTH) * (0.72 + 0.28 * tooth)
         paint.append(np.tile(colours.GUM, (columns, 1)) if is_gum else tint)
     rows = len(points)
     triangles = sheet(rows, columns) if upper else sheet(rows, columns)[:, ::-1]
     name = "teeth_upper" if upper else "teeth_lower"
     return Part(name, np.concatenate(points), triangles, np.concatenate(paint), sheet_mirror(rows, columns))
+
+
+def _upper_arch(contact: Array, columns: int) -> tuple[Array, Array]:
+    """Return the upper teeth's line and the way out of it, (columns, 3) each: half an ellipse, on as far as a smile shows."""
+    wide, deep, front = 2.5, 3.6, contact[len(contact) // 2, 2] - 0.86
+    turn = np.radians(np.interp(np.linspace(-1, 1, columns), np.linspace(-1, 1, 13), _mirrored(UPPER_DEGREES)))
+    line = np.column_stack([wide * np.sin(turn), np.zeros(columns), front - deep * (1 - np.cos(turn))])
+    away = np.column_stack([deep * np.sin(turn), np.zeros(columns), wide * np.cos(turn)])
+    return line, away / np.linalg.norm(away, axis=1, keepdims=True)
+
+
+def _lower_arch(contact: Array, columns: int) -> tuple[Array, Array]:
+    """Return the lower teeth's line and the way out of it, (columns, 3) each, along the lips' contact."""
+    away = outward(contact)
+    line = contact - away * 0.98
+    place, along = np.linspace(0, 1, len(line)), np.linspace(0.03, 0.97, columns)
+    there = [np.column_stack([np.interp(along, place, one[:, axis]) for axis in range(3)]) for one in (line, away)]
+    return there[0], there[1]
+
+
+def _mirrored(half: tuple[float, ...]) -> Array:
+    """Return angles from the middle outwards as angles from right to left."""
+    return np.array([*(-angle for angle in half[:0:-1]), *half])
 
 
 def tongue() -> Part:

@@ -4,11 +4,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtWidgets import QMessageBox
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog, QMessageBox
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
 from app.settings import Settings
+from app.window.main_window import MainWindow
 from engine.formats import read_take
 from engine.performance import demo
 
@@ -43,6 +45,19 @@ def load(qtbot: QtBot, window: MainWindow, path: Path) -> None:
     """Open a file, and wait until it is open."""
     with qtbot.waitSignal(window.files.opened, timeout=20_000):
         window.load(path)
+
+
+def noted(window: MainWindow, text: str) -> None:
+    """Type a note on the frame at the playhead."""
+    QTest.keyClicks(window.notes.entry, text)
+    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
+
+
+def saved_as(qtbot: QtBot, window: MainWindow, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Save what is open for the first time, and wait until it is saved."""
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
+    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
+        QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
 
 
 def settled(qtbot: QtBot, window: MainWindow) -> None:

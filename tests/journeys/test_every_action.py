@@ -7,8 +7,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QMessageBox
 from pytestqt.qtbot import QtBot
 
-from app.actions import ACTIONS
-from app.main_window import MainWindow
+from app.actions.table import ACTIONS
+from app.window.main_window import MainWindow
 from tests.journeys.conftest import settled
 
 

@@ -11,10 +11,10 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.commands import MarkCommand
-from app.main_window import MainWindow
+from app.session.commands import MarkCommand
 from app.spans.filling import VARIANTS
 from app.timeline.panel import RULER_PX
+from app.window.main_window import MainWindow
 from engine.project import Pin, Span
 from engine.take import SHAPES, Take
 

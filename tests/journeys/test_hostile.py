@@ -12,7 +12,7 @@ from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
 from engine.take import SHAPES, Take
 from tests.journeys.conftest import settled

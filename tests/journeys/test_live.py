@@ -12,10 +12,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QMessageBox
 from pytestqt.qtbot import QtBot
 
-from app.keeper import Keeper
-from app.main_window import MainWindow
-from app.opening import Wish, opened
 from app.session import Session
+from app.session.keeper import Keeper
+from app.session.opening import Wish, opened
+from app.window.main_window import MainWindow
 from engine.formats import read_take
 from engine.live.replay import replay
 from engine.performance import demo
@@ -86,7 +86,7 @@ def test_a_window_closed_while_it_records_offers_the_recording_at_the_next_start
     keeper = Keeper(session, window.keeper.folder)
     try:
         assert keeper.left_over() == []  # for all it knows another program is still recording
-        monkeypatch.setattr("app.keeper.ABANDONED_S", -1.0)
+        monkeypatch.setattr("app.session.keeper.ABANDONED_S", -1.0)
         (left,) = keeper.left_over()
         keeper.open(opened(session, Wish(left.path, left_over=True)))
     finally:

@@ -14,9 +14,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QPushButton
 from pytestqt.qtbot import QtBot
 
-from app.bench_playback import NullSink
-from app.main_window import MainWindow
+from app.bench.playback import NullSink
 from app.timeline.panel import AUDIO_PX, RULER_PX
+from app.window.main_window import MainWindow
 from engine.performance import demo
 from tests.films import film
 from tests.journeys.conftest import load, settled

@@ -7,15 +7,15 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QFileDialog, QToolButton
+from PySide6.QtWidgets import QApplication, QToolButton
 from pytestqt.qtbot import QtBot
 
-from app.actions import ACTIONS, keys_of
-from app.hints import BETWEEN
-from app.main_window import MainWindow
-from app.page import Page
+from app.actions.table import ACTIONS, keys_of
+from app.dialogs.page import Page
+from app.widgets.hints import BETWEEN
+from app.window.main_window import MainWindow
 from engine.performance import demo
-from tests.journeys.conftest import load, settled
+from tests.journeys.conftest import load, noted, saved_as, settled
 from tests.journeys.test_non_expert import LIPS, drag
 from tests.pictures.compare import SIZE
 
@@ -36,10 +36,7 @@ def test_hints_follow_the_work_and_move_no_button(
     drag(qtbot, window, LIPS, 130, -6.0)
     assert "Ctrl+Z takes it back" in hints.text() and "Ctrl+S saves" in hints.text()
     assert buttons(window) == places
-    project = tmp_path / "first.retake"
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(project), ""))
-    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
-        QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    saved_as(qtbot, window, tmp_path / "first.retake", monkeypatch)
     assert hints.text() == ""
     assert buttons(window) == places
 
@@ -64,9 +61,10 @@ def test_the_only_span_is_filled_without_choosing_it_and_enter_in_an_entry_keeps
     assert session.selection == (session.marks.spans[0].start, session.marks.spans[0].stop)
     assert not window.notices.isVisible()
     window.notes.entry.setFocus()
-    QTest.keyClicks(window.notes.entry, "lost here")
-    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
+    noted(window, "lost here")
     assert [note.text for note in session.marks.notes] == ["lost here"]
+    window.brush.radius.setFocus()
+    QTest.keyClick(window.brush.radius, Qt.Key.Key_Return)
     assert window.filling.variants and session.take.weights is session.original.weights
     window.curves.setFocus()
     QTest.keyClick(window.curves, Qt.Key.Key_Return)

@@ -13,12 +13,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX, measure
 from engine.formats import read_take
 from engine.performance import demo
-from tests.engine.projects import same
-from tests.journeys.conftest import load, settled
+from tests.engine.project.projects import same
+from tests.journeys.conftest import load, saved_as, settled
 from tests.pictures.compare import SIZE, looks_as_it_did
 
 LIPS = CONTROL_INDEX["lips_vertical"]
@@ -85,9 +85,7 @@ def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
         np.testing.assert_array_equal(again, edited)
 
     project, exported = tmp_path / "Ärger 顔.retake", tmp_path / "Ärger 顔.csv"
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(project), ""))
-    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
-        QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
+    saved_as(qtbot, window, project, monkeypatch)
     assert not session.edited
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(exported), ""))
     QTest.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)

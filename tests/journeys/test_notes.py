@@ -8,17 +8,16 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 from engine.performance import demo
-from tests.journeys.conftest import load
+from tests.journeys.conftest import load, noted
 
 
 def test_a_note_is_typed_shown_saved_and_taken_back(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
     session, height = window.session, window.timeline.sizeHint().height()
     session.move_playhead(120)
     QTest.keyClick(window, Qt.Key.Key_N)
-    QTest.keyClicks(window.notes.entry, "lips miss the b")
-    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
+    noted(window, "lips miss the b")
     (note,) = session.marks.notes
     assert (note.frame, note.text) == (120, "lips miss the b")
     assert window.timeline.sizeHint().height() > height

@@ -13,12 +13,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 from engine.formats import read_take, write_take
 from engine.performance import demo
 from engine.project import Project
 from engine.take import Take
-from tests.journeys.conftest import load, settled
+from tests.journeys.conftest import load, noted, saved_as, settled
 
 
 class SlowDisk:
@@ -44,7 +44,7 @@ class SlowDisk:
 @pytest.fixture
 def disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowDisk]:
     slow = SlowDisk()
-    monkeypatch.setattr("app.opening.read_take", slow)
+    monkeypatch.setattr("app.session.opening.read_take", slow)
     yield slow
     slow.go_on.set()
 
@@ -123,42 +123,37 @@ def test_the_window_closes_while_a_file_is_read(
     assert disk.ended == [files[0].name]
 
 
+@pytest.fixture
+def project(qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """What the window has open: the demo take with one note, saved."""
+    noted(window, "one")
+    saved_as(qtbot, window, tmp_path / "a.retake", monkeypatch)
+    return tmp_path / "a.retake"
+
+
 def test_a_project_that_is_open_can_be_opened_again_and_stays_its_file(
-    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, window: MainWindow, project: Path
 ) -> None:
-    path = tmp_path / "a.retake"
-    QTest.keyClicks(window.notes.entry, "one")
-    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
-    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
-        QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
-    load(qtbot, window, path)
-    assert window.keeper.path == path and not window.session.edited and len(window.session.marks.notes) == 1
+    load(qtbot, window, project)
+    assert window.keeper.path == project and not window.session.edited and len(window.session.marks.notes) == 1
     with qtbot.waitSignal(window.keeper.kept, timeout=10_000):
-        QTest.keyClicks(window.notes.entry, "two")
-        QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
+        noted(window, "two")
     window.close()
-    assert [note.text for note in Project.open(path).contents.marks.notes] == ["one", "two"]
+    assert [note.text for note in Project.open(project).contents.marks.notes] == ["one", "two"]
 
 
 def test_a_project_that_cannot_be_read_again_leaves_its_work_kept_elsewhere(
-    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, window: MainWindow, project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = tmp_path / "a.retake"
-    QTest.keyClicks(window.notes.entry, "one")
-    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
-    with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
-        QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
     release = window.keeper.release
 
     def damaged() -> None:
         release()
-        path.write_bytes(b"something else")
+        project.write_bytes(b"something else")
 
     monkeypatch.setattr(window.keeper, "release", damaged)
     with qtbot.waitSignals([window.files.told, window.keeper.kept], timeout=10_000):
-        window.load(path)
+        window.load(project)
     assert window.session.edited and len(window.session.marks.notes) == 1
     (left,) = (tmp_path / "unsaved").glob("*.retake")
     window.session.undo.setClean()

@@ -8,7 +8,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
 from engine.take import SHAPE_INDEX
 from tests.journeys.conftest import settled
@@ -32,6 +32,8 @@ def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtB
     session = window.session
     session.move_playhead(80)
     QTest.keyClick(window, Qt.Key.Key_K)
+    settled(qtbot, window)
+    assert "Move a slider" in window.pins.hint.text() and window.pins.hint.y() < window.pins.before.y()  # read first
     QTest.keyClicks(window.pins.search, "smile")
     for name in ("mouthSmileLeft", "mouthSmileRight"):
         press(window.pins.sliders[name], Qt.Key.Key_Home)

@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.curve_table import CURVES, FIRST_WEIGHT, weights_under
-from app.main_window import MainWindow
+from app.session.curve_table import CURVES, FIRST_WEIGHT, weights_under
+from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
 from engine.performance import demo
 from engine.take import SHAPE_INDEX
-from tests.journeys.conftest import settled
+from tests.journeys.conftest import load, saved_as, settled
 from tests.pictures.compare import SIZE, looks_as_it_did
 
 LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
@@ -140,13 +139,9 @@ def test_a_typed_value_is_reached(qtbot: QtBot, window: MainWindow) -> None:
 
 def reopened(qtbot: QtBot, window: MainWindow, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Save the project, open something else, and open it again."""
-    session = window.session
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
-    QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
-    qtbot.waitUntil(lambda: not session.edited, timeout=10_000)
+    saved_as(qtbot, window, path, monkeypatch)
     for opened in (demo.BUNDLED, path):
-        window.load(opened)
-        qtbot.waitUntil(lambda opened=opened: session.path == opened, timeout=10_000)
+        load(qtbot, window, opened)
 
 
 def test_a_morning_of_editing_is_kept_step_by_step(

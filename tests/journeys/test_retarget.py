@@ -12,8 +12,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
 from app.preview.picking import places
+from app.window.main_window import MainWindow
 from engine.character import bundled, save
 from engine.formats import read_take
 from engine.performance import demo
@@ -115,3 +115,41 @@ def test_a_take_is_carried_to_another_head_and_back(
     assert session.character is None
     QTest.keyClick(window, Qt.Key.Key_Z, CONTROL)
     assert retarget.retargeting.target.places["chin"] == before
+
+
+def test_the_head_a_take_is_shown_on_is_the_target_until_another_is_chosen(
+    qtbot: QtBot, window: MainWindow, broad_head: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    retarget, steps = window.retarget.retargeting, window.session.undo.count()
+    chosen = [str(broad_head), "", str(broad_head), str(broad_head), str(tmp_path / "no.glb")]
+    (tmp_path / "no.glb").write_bytes(b"no head")
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (chosen.pop(0), ""))
+    window.actions_by_name["load_character"].trigger()
+    assert (
+        window.status["notice"].text() == "reading broad.npz…" and window.preview._character is None
+    )  # beside the work
+    retargeted(qtbot, window)
+    assert not window.status["notice"].text()
+    QTest.keyClick(window, Qt.Key.Key_T)
+    retargeted(qtbot, window)
+    assert retarget.ready and window.session.undo.count() == steps and not window.session.edited
+    shown, overlay = window.preview._character, window.preview.face.overlay
+    assert retarget.target.head is shown and retarget.target.path == broad_head and "chin" in retarget.target.places
+    assert overlay is not None and overlay.sides[1].head is shown
+
+    window.actions_by_name["load_character"].trigger()  # called off: on Retake's own head again
+    retargeted(qtbot, window)
+    assert retarget.target.head is None and window.preview._character is None
+
+    QTest.mouseClick(window.retarget.panel.target_button, LEFT)
+    retargeted(qtbot, window)
+    mine = retarget.target.head
+    window.actions_by_name["load_character"].trigger()
+    retargeted(qtbot, window)
+    shown = window.preview._character
+    assert shown is not None and shown is not mine and retarget.target.head is mine
+
+    window.actions_by_name["load_character"].trigger()
+    retargeted(qtbot, window)
+    assert "no.glb" in window.notices.text.text() and not window.status["notice"].text()
+    assert window.preview._character is shown and retarget.target.head is mine

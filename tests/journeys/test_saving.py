@@ -10,16 +10,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 from engine.project import Project
-from tests.journeys.conftest import settled
+from tests.journeys.conftest import noted, settled
 
 Answer = QMessageBox.StandardButton
-
-
-def noted(window: MainWindow, text: str) -> None:
-    QTest.keyClicks(window.notes.entry, text)
-    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
 
 
 def test_closing_while_a_project_is_saved_waits_with_a_sentence(

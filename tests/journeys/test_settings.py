@@ -12,14 +12,15 @@ from PySide6.QtWidgets import QApplication, QComboBox
 from pytestqt.qtbot import QtBot
 
 from app import theme
-from app.bench_playback import NullSink
-from app.main_window import MainWindow
-from app.page import Page
+from app.bench.playback import NullSink
+from app.dialogs.page import Page
+from app.dialogs.settings import SettingsDialog
 from app.playback import device
 from app.playback.clock import AudioClock
 from app.settings import Settings, log_path
-from app.settings_dialog import SettingsDialog
+from app.window.main_window import MainWindow
 from engine.formats.audio import Audio
+from tests.journeys.conftest import noted
 
 CONTROL = Qt.KeyboardModifier.ControlModifier
 
@@ -56,8 +57,7 @@ def test_each_setting_applies_at_once_and_is_kept(
     dialog.author.selectAll()
     QTest.keyClicks(dialog.author, "Ana")
     QTest.keyClick(dialog.author, Qt.Key.Key_Return)
-    QTest.keyClicks(window.notes.entry, "softer")
-    QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
+    noted(window, "softer")
     assert window.session.marks.notes[0].author == "Ana"
     window.settings.remember(tmp_path / "a.csv")
     dialog.refresh()

@@ -11,9 +11,9 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.bench_playback import NullSink
-from app.main_window import MainWindow
+from app.bench.playback import NullSink
 from app.playback.clock import AudioClock
+from app.window.main_window import MainWindow
 from engine.performance import demo
 from tests.films import film, shade
 from tests.journeys.conftest import load, settled

@@ -9,13 +9,12 @@ import pytest
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
 from engine.performance import demo
-from tests.journeys.conftest import settled
+from tests.journeys.conftest import load, saved_as, settled
 
 LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
 LIPS = CONTROL_INDEX["lips_vertical"]
@@ -63,13 +62,10 @@ def test_dropped_corrected_saved_and_taken_back(
     said = session.visemes
     assert said.cues[2].label == "IY1" and session.undo.count() == 3
 
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path / "a.retake"), ""))
-    QTest.keyClick(window, Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
-    qtbot.waitUntil(lambda: not session.edited, timeout=10_000)
-    window.load(demo.BUNDLED)
-    qtbot.waitUntil(lambda: session.visemes is None, timeout=10_000)
-    window.load(tmp_path / "a.retake")
-    qtbot.waitUntil(lambda: session.visemes is not None, timeout=10_000)
+    saved_as(qtbot, window, tmp_path / "a.retake", monkeypatch)
+    load(qtbot, window, demo.BUNDLED)
+    assert session.visemes is None
+    load(qtbot, window, tmp_path / "a.retake")
     assert (session.visemes.cues, session.visemes.originals) == (said.cues, said.originals)
     window.actions_by_name["restore_visemes"].trigger()
     assert session.visemes.cues == said.originals

@@ -38,9 +38,9 @@ def edit_until_killed(folder: Path, seed: int, tell: Connection, *, frames: int 
     """Push, undo and redo edits for ever, telling each state before it is reached and when it is reported safe."""
     from PySide6.QtCore import QCoreApplication
 
-    from app.commands import EditCommand
-    from app.keeper import Keeper
     from app.session import Session
+    from app.session.commands import EditCommand
+    from app.session.keeper import Keeper
 
     application = QCoreApplication([])
     rng = np.random.default_rng(seed)
@@ -105,7 +105,7 @@ def save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
 def start(session: object, folder: Path, seed: int) -> tuple[multiprocessing.process.BaseProcess, Connection]:
     """Start a session in a process of its own, from a server that has imported everything already."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["app.keeper", "engine.project"])
+    context.set_forkserver_preload(["app.session.keeper", "engine.project"])
     told, tell = context.Pipe(duplex=False)
     process = context.Process(target=session, args=(folder, seed, tell), daemon=True)
     process.start()

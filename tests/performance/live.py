@@ -244,8 +244,8 @@ def run(seconds: float, *, record: bool, flooded: bool) -> tuple[Log, Array, dic
 @contextmanager
 def opened(folder: Path, loop):  # type: ignore[no-untyped-def]
     """Give a window whose networks are loaded."""
-    from app.main_window import MainWindow
     from app.settings import Settings
+    from app.window.main_window import MainWindow
 
     window = MainWindow(demo.performance(), None, Settings(folder / "live.ini"), unsaved=folder / "unsaved")
     window.show()

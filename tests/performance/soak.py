@@ -13,7 +13,7 @@ import threading
 from PySide6.QtCore import QEventLoop
 from PySide6.QtWidgets import QApplication
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 from engine.performance import demo
 
 ALLOWED_MB = 30.0

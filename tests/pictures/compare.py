@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from PySide6.QtGui import QImage
 
-from app.main_window import MainWindow
+from app.window.main_window import MainWindow
 
 HERE = Path(__file__).parent
 SIZE = (1280, 800)

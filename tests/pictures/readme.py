@@ -11,8 +11,8 @@ from PySide6.QtCore import QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.main_window import MainWindow
 from app.settings import Settings
+from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
 from engine.formats import read_take
 from engine.performance import demo

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.commands import VisemesCommand
-from app.main_window import MainWindow
+from app.session.commands import VisemesCommand
+from app.window.main_window import MainWindow
 from engine.project import Media
 from engine.speech.lane import attached
 from engine.speech.visemes import Cue

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 
-from app.curve_table import CURVES
+from app.session.curve_table import CURVES
 from engine.take import Array
 
 if TYPE_CHECKING:
@@ -78,3 +78,28 @@ class Tool:
             self.panel.inference.finish(f"{verb} {CURVES[lane].title}")
         self.panel.show_brush(None, None)
         self.panel.show_readout("", at)
+
+
+class Stroke(Tool):
+    """A tool that holds one curve from the press to the release."""
+
+    _lane: int | None = None
+    verb = ""  # what the undo step is called
+
+    @property
+    def busy(self) -> bool:
+        """Whether a curve is held."""
+        return self._lane is not None
+
+    def release(self, event: QMouseEvent) -> None:
+        """Make it one undo step; a click that asked for nothing is none."""
+        if self._lane is not None:
+            lane, self._lane = self._lane, None
+            self.done(self.verb, lane, event.position())
+
+    def cancel(self) -> None:
+        """Let the curve spring back."""
+        if self._lane is not None:
+            self._lane = None
+            self.panel.inference.cancel()
+            self.leave()

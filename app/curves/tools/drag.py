@@ -5,24 +5,19 @@ from __future__ import annotations
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 
-from app.curve_table import CURVES
 from app.curves.brush import pulled, reach
-from app.curves.tools.base import FINE, Tool
+from app.curves.tools.base import FINE, Stroke
+from app.session.curve_table import CURVES
 
 
-class DragTool(Tool):
+class DragTool(Stroke):
     """Pull a curve anywhere; a soft brush bends it and the face follows."""
 
     cursor = Qt.CursorShape.SizeVerCursor
-    _lane: int | None = None
+    verb = "drag"
     _centre = 0
     _from = QPointF()
     _by = 0.0
-
-    @property
-    def busy(self) -> bool:
-        """Whether a curve is held."""
-        return self._lane is not None
 
     def press(self, lane: int, event: QMouseEvent) -> None:
         """Take hold of the curve at the frame under the pointer."""
@@ -46,25 +41,12 @@ class DragTool(Tool):
         self._pull()
         self._hint(self._lane, self._centre, event.position())
 
-    def release(self, event: QMouseEvent) -> None:
-        """Make the drag one undo step; a click without a pull is none."""
-        if self._lane is not None:
-            lane, self._lane = self._lane, None
-            self.done("drag", lane, event.position())
-
     def wheel(self, notches: float) -> None:
         """Widen or narrow the brush."""
         session = self.panel.session
         session.set_brush(radius_frames=round(session.radius_frames * 1.15**notches + (notches > 0)))
         if self._lane is not None:
             self._pull()
-
-    def cancel(self) -> None:
-        """Let the curve spring back."""
-        if self._lane is not None:
-            self._lane = None
-            self.panel.inference.cancel()
-            self.leave()
 
     def refresh(self) -> None:
         """Let handle and read-out follow the face, which answers a moment after the pointer."""

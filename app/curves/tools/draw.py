@@ -6,28 +6,23 @@ import numpy as np
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 
-from app.curve_table import CURVES
-from app.curves.tools.base import Tool
+from app.curves.tools.base import Stroke
+from app.session.curve_table import CURVES
 from engine.take import Array
 
 JOIN_FRAMES = 3  # over which a sketch eases into what lies beside it
 
 
-class DrawTool(Tool):
+class DrawTool(Stroke):
     """Sketch the curve as it should be; what lies beside the sketch stays."""
 
     cursor = Qt.CursorShape.CrossCursor
+    verb = "draw"
 
     def __init__(self, panel) -> None:  # type: ignore[no-untyped-def]
         super().__init__(panel)
-        self._lane: int | None = None
         self._sketch: dict[int, float] = {}
         self._last = (0, 0.0)
-
-    @property
-    def busy(self) -> bool:
-        """Whether a sketch is under way."""
-        return self._lane is not None
 
     def press(self, lane: int, event: QMouseEvent) -> None:
         """Put the pen down."""
@@ -56,19 +51,6 @@ class DrawTool(Tool):
         self.panel.session.move_playhead(frame)
         self.ask(self._lane, *self._asked(self._lane))
         self.panel.show_readout(f"{CURVES[self._lane].shown(value)} · frame {frame}", at)
-
-    def release(self, event: QMouseEvent) -> None:
-        """Make the sketch one undo step."""
-        if self._lane is not None:
-            lane, self._lane = self._lane, None
-            self.done("draw", lane, event.position())
-
-    def cancel(self) -> None:
-        """Rub the sketch out."""
-        if self._lane is not None:
-            self._lane = None
-            self.panel.inference.cancel()
-            self.leave()
 
     def _point(self, lane: int, at: QPointF) -> tuple[int, float]:
         frame = int(np.clip(round(self.panel.frame_at(at)), 0, len(self.panel.session.take) - 1))

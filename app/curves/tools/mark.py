@@ -7,8 +7,8 @@ from dataclasses import replace
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QMouseEvent
 
-from app.commands import MarkCommand
 from app.curves.tools.base import Tool
+from app.session.commands import MarkCommand
 from engine.project import Span
 
 

@@ -6,8 +6,8 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QMouseEvent
 
-from app.curve_table import CURVES
 from app.curves.tools.base import Tool
+from app.session.curve_table import CURVES
 from engine.take import Array
 
 HANDLE_PX = 9

@@ -6,7 +6,6 @@ import io
 import json
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,29 +15,11 @@ import numpy.typing as npt
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
 from engine.formats.characters import usd
-from engine.take import Array
+from engine.formats.characters.moving import MovingMesh
 
 TOLERANCE = 1e-4  # of the mesh's size: what leaving a morph target out may move a vertex by
 MOST_TARGETS = 200
 ENDINGS = (".glb", *usd.ENDINGS, ".npz")
-
-
-@dataclass(frozen=True, eq=False)
-class MovingMesh:
-    """A mesh over time.
-
-    Attributes
-    ----------
-    rest : (n, 3) mm
-    triangles : (t, 3)
-    frames : (frames, n, 3) float32, mm
-    fps : frames per second
-    """
-
-    rest: Array
-    triangles: npt.NDArray[np.int32]
-    frames: npt.NDArray[np.float32]
-    fps: float
 
 
 def write(mesh: MovingMesh, path: Path) -> None:

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from engine.errors import EngineError
 from engine.formats.atomic import write_bytes
-
-if TYPE_CHECKING:
-    from engine.formats.characters.animation import MovingMesh
+from engine.formats.characters.moving import MovingMesh
 
 ENDINGS = (".usd", ".usdc", ".usda")
 METRES_PER_MM = 0.001

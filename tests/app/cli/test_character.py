@@ -10,7 +10,8 @@ from scipy.spatial import cKDTree
 from app import cli
 from engine.character import BUNDLED, bundled, load
 from engine.formats import read_take
-from engine.formats.characters.animation import MovingMesh, write
+from engine.formats.characters.animation import write
+from engine.formats.characters.moving import MovingMesh
 from engine.performance import demo
 from engine.spacetime.layout import standard
 
@@ -84,6 +85,19 @@ def test_mistakes_get_one_sentence(
     assert cli.run([part.format(**places) for part in arguments]) == 2
     assert says in capsys.readouterr().err
     assert not (tmp_path / "out.npz").exists()
+
+
+def test_a_mesh_of_few_vertices_is_driven_by_few_points_and_told_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mesh, points, out = tmp_path / "few.obj", tmp_path / "points.csv", tmp_path / "out.npz"
+    mesh.write_text("v 0 0 0\nv 90 0 0\nv 0 90 0\nv 0 0 90\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n")
+    drive = ["drive", str(demo.BUNDLED), "--mesh", str(mesh), "-o", str(out)]
+    assert cli.run(drive) == 2
+    told = capsys.readouterr().err
+    assert "is a feature point twice." in told and "fewer points in a marker,vertex file" in told
+    points.write_text("marker,vertex\nforehead,2\nnose_tip,3\nchin,0\ncheek_left,1\n")
+    assert cli.run([*drive, "--points", str(points)]) == 0 and np.load(out)["vertices"].shape == (322, 4, 3)
 
 
 def test_a_moving_mesh_of_another_program_is_a_character_too(tmp_path: Path) -> None:

@@ -8,7 +8,8 @@ import pytest
 from app import cli
 from engine.character import BUNDLED, bundled
 from engine.formats import labels, read_take
-from engine.formats.markers import Markers, write
+from engine.formats.capture import Markers
+from engine.formats.markers import write
 from engine.performance import demo
 from engine.spacetime.layout import standard
 from engine.take import SHAPE_INDEX

@@ -8,8 +8,8 @@ from pytestqt.qtbot import QtBot
 
 from app.playback.clock import REST_S, STALL_S, AudioClock, WallClock
 from app.playback.source import GRAIN_S, RAMP_S, Source
+from app.playback.transport import Transport
 from app.session import Session
-from app.transport import Transport
 from engine.formats.audio import Audio
 from engine.take import SHAPES, Take
 from tests.app.playback.sinks import SimulatedSink

@@ -8,12 +8,12 @@ import pytest
 import soundfile
 from pytestqt.qtbot import QtBot
 
-from app.bench_playback import NullSink
+from app.bench.playback import NullSink
 from app.playback.clock import AudioClock, WallClock
 from app.playback.device import open_device
 from app.playback.media import Media
+from app.playback.transport import Transport
 from app.session import Change, Session
-from app.transport import Transport
 from engine.take import SHAPES, Take
 
 RATE = 16_000

@@ -6,7 +6,7 @@ import pytest
 from app.preview.camera import PRESETS, Camera
 from app.preview.overlay import Overlay
 from app.preview.picking import View, vertex_under, views
-from app.sides import Dot, Side
+from app.session.sides import Dot, Side
 from engine.character import bundled
 from engine.take import SHAPES, Array
 

@@ -95,3 +95,41 @@ def test_labels_of_a_longer_take_are_refused(
     with qtbot.waitSignal(labelling.failed) as told:
         click(labelling.panel.read_button)
     assert "the take has 60 frames" in told.args[0] and not labelling.retargeting.target.labels
+
+
+def test_a_label_file_that_names_its_head_opens_that_head_in_one_step(
+    qtbot: QtBot, retarget: RetargetActions, other_head: Path, tmp_path: Path, choose_file: list[Path]
+) -> None:
+    head = tmp_path / "broad.npz"
+    head.write_bytes(other_head.read_bytes())
+    (tmp_path / "labels.json").write_text(
+        '{"target": "broad.npz", "labels": [{"frame": 12, "weights": {"jawOpen": 0.4}}]}'
+    )
+    state, undo = retarget.retargeting, retarget._session.undo
+    choose_file.extend(2 * [tmp_path / "labels.json"])
+    retarget.read_labels()  # from the menu: its button comes with the method
+    settle(qtbot, retarget)
+    target = state.target
+    assert target.path == head and target.head is not None and target.head.name == "broad" and "chin" in target.places
+    assert target.labels == {12: {"jawOpen": 0.4}} and state.method == LABELS and state.ready and undo.count() == 1
+    assert list(retarget.panel.labels.frames) == [12]
+
+    click(retarget.panel.labels.frames[12])
+    click(retarget.panel.labels.unlabel_button)
+    click(retarget.panel.read_button)  # again: the head is there already
+    settle(qtbot, retarget)
+    assert state.target.head is target.head and state.target.labels == target.labels
+    for _ in range(3):
+        undo.undo()
+    assert state.target.head is None and not state.target.labels
+
+
+def test_labels_for_a_head_that_is_not_there_change_nothing_and_say_so(
+    qtbot: QtBot, labelling: RetargetActions, tmp_path: Path, choose_file: list[Path]
+) -> None:
+    (tmp_path / "labels.json").write_text('{"target": "gone.npz", "labels": [{"frame": 12, "weights": {}}]}')
+    before = labelling.retargeting.target
+    choose_file.append(tmp_path / "labels.json")
+    with qtbot.waitSignal(labelling.failed, timeout=20_000) as told:
+        click(labelling.panel.read_button)
+    assert "gone.npz" in told.args[0] and labelling.retargeting.target is before

@@ -9,14 +9,15 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QPushButton
 from pytestqt.qtbot import QtBot
 
-from app.commands import restored
 from app.retarget.actions import RetargetActions
 from app.retarget.carry import Carried
 from app.retarget.sides import sides
 from app.retarget.strengths import STEPS, position, strength_at
+from app.session.commands import restored
 from engine.character import Character, bundled
 from engine.controls import bundled_measurer
-from engine.formats.markers import Markers, write
+from engine.formats.capture import Markers
+from engine.formats.markers import write
 from engine.project import replay
 from engine.spacetime.layout import standard
 from engine.spacetime.matching import Matching

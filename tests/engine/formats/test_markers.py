@@ -10,7 +10,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from engine.errors import FormatError
-from engine.formats.markers import Markers, read, write
+from engine.formats.capture import Markers
+from engine.formats.markers import read, write
 
 
 @pytest.fixture

@@ -105,6 +105,12 @@ def test_unusable_points_are_named(points: np.ndarray, says: str) -> None:
         MeshDriver(pose(), bundled().triangles, points)
 
 
+def test_a_point_twice_is_told_how_to_be_mended() -> None:
+    with pytest.raises(EditError) as told:
+        MeshDriver(pose(), bundled().triangles, np.array([0, 100, 200, 300, 300]))
+    assert told.value.sentence == "Vertex 300 is a feature point twice." and "fewer points" in told.value.advice
+
+
 def test_points_in_one_plane_are_refused() -> None:
     flat = np.c_[np.random.default_rng(0).random((30, 2)), np.zeros(30)]
     triangles = np.arange(30).reshape(-1, 3)

@@ -10,7 +10,8 @@ from engine.character import bundled
 from engine.errors import EngineError, FormatError
 from engine.formats import read_take
 from engine.formats.characters import gltf
-from engine.formats.characters.animation import TOLERANCE, MovingMesh, targets, write
+from engine.formats.characters.animation import TOLERANCE, targets, write
+from engine.formats.characters.moving import MovingMesh
 from engine.performance import demo
 
 

@@ -1,0 +1,1 @@
+"""What the user can do: the table of it, the menus made from that, and who carries it out (`retarget` its own)."""

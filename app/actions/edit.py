@@ -1,0 +1,188 @@
+"""The actions that change the take."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from app.curves.brush import eased_to
+from app.curves.panel import CurvesPanel
+from app.inspector.value import closes
+from app.session import Session
+from app.session.commands import EditCommand
+from app.session.curve_table import CURVES
+from app.session.inference import Inference
+from app.spans.filling import Filling
+from engine.take import Array
+
+if TYPE_CHECKING:
+    from engine.editing import Dragger, Patch
+
+EASE_FRAMES = 5
+
+
+class EditActions(QObject):
+    """Each method is an action of the table.
+
+    Parameters
+    ----------
+    session, inference, curves, filling : what they work on
+    """
+
+    told = Signal(str)  # a short remark for the status bar
+
+    def __init__(self, session: Session, inference: Inference, curves: CurvesPanel, filling: Filling) -> None:
+        super().__init__()
+        self._session, self._inference, self._curves, self._filling = session, inference, curves, filling
+        self._copied: Array | None = None
+        self.cutoff_hz: Callable[[], float] = lambda: 6.0
+        self.let_go: Callable[[], bool] = lambda: False  # of what is held on the timeline; whether there was any
+        self.stop_else: Callable[[], bool] = lambda: False  # stops other work under way; whether there was any
+
+    def undo(self) -> None:
+        """Take back the last step."""
+        if not self._inference.busy:
+            self._filling.drop()
+            self._session.undo.undo()
+
+    def redo(self) -> None:
+        """Do the step that was taken back again."""
+        if not self._inference.busy:
+            self._filling.drop()
+            self._session.undo.redo()
+
+    def cancel(self) -> None:
+        """Drop the gesture, the fill or the preview under way; with none, clear the selection."""
+        tool = self._curves.tool
+        if tool.busy:
+            tool.cancel()
+        elif self._filling.variants or self._filling.busy:
+            self._filling.drop()
+        elif self._inference.busy:
+            self._inference.cancel()
+        elif not (self.let_go() or self.stop_else()):
+            self._session.select(None)
+
+    def close_here(self) -> None:
+        """Bring lips or eyelids together on the selection, or around the playhead."""
+        if closes(self._session.lane):
+            self._set_curve(0.0, f"close {CURVES[self._session.lane].title}")
+
+    def set_value(self, value: float) -> None:
+        """Set the active curve at the playhead, or over the selection, to a value."""
+        curve = CURVES[self._session.lane]
+        self._set_curve(value, f"set {curve.title} to {curve.shown(value)}")
+
+    def _set_curve(self, value: float, title: str) -> None:
+        session = self._session
+        if self._inference.busy:
+            return
+        frames = session.selection or (session.playhead, session.playhead + 1)
+        ease_frames = EASE_FRAMES if session.selection else session.radius_frames
+        start, asked = eased_to(session.curve(session.lane), frames, value, ease_frames=ease_frames)
+        self._curves.tool.ask(session.lane, start, asked)
+        self._inference.finish(title, kind="set", inputs={"value": value, "frames": list(frames)})
+
+    def hit_exactly(self) -> None:
+        """Let edits hit their curve, believable or not; or let them be believable again."""
+        self._session.set_brush(exact=not self._session.exact)
+
+    def rest_follows(self) -> None:
+        """Let controls that nobody asked for follow those that are dragged; or keep them as the take has them."""
+        self._session.set_brush(follow=not self._session.follow)
+
+    def again(self) -> None:
+        """Take the last edit back and make it again with the settings as they are now."""
+        session = self._session
+        step = session.undo.command(session.undo.index() - 1)
+        if not isinstance(step, EditCommand) or step.asked is None or self._inference.busy:
+            self.told.emit("the last step asked for no curve")
+            return
+        start, asked = step.asked
+        self.undo()
+        self._inference.ask(start, asked)
+        self._inference.finish(step.text(), kind=step.edit.kind, inputs=step.edit.inputs)
+
+    def copy(self) -> None:
+        """Remember the weights of the selection, or of the frame at the playhead."""
+        session = self._session
+        start, stop = session.selection or (session.playhead, session.playhead + 1)
+        self._copied = session.take.weights[start:stop]
+        self.told.emit(f"copied {stop - start} frames")
+
+    def paste(self) -> None:
+        """Put what was copied in place from the playhead on."""
+        copied, start = self._copied, self._session.playhead
+        if copied is None or self._inference.busy:
+            return
+
+        def verb(dragger: Dragger) -> Patch:
+            from engine.retouch import paste
+
+            return paste(dragger.take, start, copied)
+
+        self._inference.run(verb)
+        self._inference.finish(f"paste {len(copied)} frames", kind="paste", inputs={"start": start})
+
+    def preview_smoothing(self, cutoff_hz: float) -> None:
+        """Show what a Butterworth filter does to the selection, or the whole take."""
+        frames = self._session.selection or (0, len(self._session.take))
+
+        def verb(dragger: Dragger) -> Patch:
+            from engine.retouch import smooth
+
+            return smooth(dragger.take, frames, cutoff_hz)
+
+        self._inference.run(verb)
+
+    def smooth(self) -> None:
+        """Smooth at the cutoff that the inspector shows."""
+        cutoff_hz = self.cutoff_hz()
+        self.preview_smoothing(cutoff_hz)
+        self._inference.finish(f"smooth at {cutoff_hz:g} Hz", kind="smooth", inputs={"cutoff_hz": cutoff_hz})
+
+    def accept(self) -> None:
+        """Keep the fill that is shown."""
+        self._filling.accept()
+
+    def wider_brush(self) -> None:
+        """Let the brush move more frames."""
+        self._session.set_brush(radius_frames=round(self._session.radius_frames * 1.25) + 1)
+
+    def narrower_brush(self) -> None:
+        """Let the brush move fewer frames."""
+        self._session.set_brush(radius_frames=round(self._session.radius_frames / 1.25) - 1)
+
+    def drag_tool(self) -> None:
+        """Work with the Drag tool."""
+        self._session.choose_tool("drag")
+
+    def draw_tool(self) -> None:
+        """Work with the Draw tool."""
+        self._session.choose_tool("draw")
+
+    def scale_tool(self) -> None:
+        """Work with the Scale tool."""
+        self._session.choose_tool("scale")
+
+    def pin_tool(self) -> None:
+        """Work with the Pin tool."""
+        self._session.choose_tool("pin")
+
+    def mark_tool(self) -> None:
+        """Work with the Mark tool."""
+        self._session.choose_tool("mark")
+
+    def live_tool(self) -> None:
+        """Work with a phone's stream."""
+        self._session.choose_tool("live")
+
+    def show_removed(self) -> None:
+        """Draw what the Clean tool would remove, or not."""
+        self._session.show_removed(shown=not self._session.shows_removed)
+
+    def clean_tool(self) -> None:
+        """Work with the Clean tool."""
+        self._session.choose_tool("clean")

@@ -1,0 +1,223 @@
+"""The actions that open, save and export, and the questions they ask."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
+
+from app.playback import media
+from app.playback.media import Media
+from app.session import Session
+from app.session.keeper import Keeper
+from app.session.opening import Opened, Opening, Wish
+from app.settings import Settings
+from engine.errors import EngineError
+from engine.formats import FORMATS, cues, write_take
+from engine.project import ENDING
+from engine.take import Take
+
+Answer = QMessageBox.StandardButton
+CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
+
+
+class FileActions(QObject):
+    """Each public method without arguments is an action of the table.
+
+    Parameters
+    ----------
+    session, keeper, media : what is open, what keeps it safe, and what plays along
+    settings : remembers recent files
+    window : the parent of the dialogs
+    """
+
+    told = Signal(str, str)  # sentence, advice
+    opened = Signal()
+    capture_dropped = Signal(object)  # the path of a file of markers
+    character_chosen = Signal(object)  # the Path of a head, or None for the bundled one
+    cues_dropped = Signal(object)  # the Path of a file that says what is said when
+
+    def __init__(self, session: Session, keeper: Keeper, media: Media, settings: Settings, window: QWidget) -> None:
+        super().__init__()
+        self._session, self._keeper, self._media = session, keeper, media
+        self.opening = Opening(session)
+        self._newest: Wish | None = None  # of those that were read
+        self._reopens = False
+        self.opening.done.connect(self._confirm)
+        self.opening.changed.connect(self._keep_again)
+        self.opening.failed.connect(self.told)
+        self._settings, self._window = settings, window
+        keeper.saved.connect(settings.remember)
+
+    def load(self, path: Path, *_: object) -> None:
+        """Read a take or a project, and open it when it is read; returns at once.
+
+        `opened` follows, or `told` where the file cannot be read: what is open then stays as it was.
+        """
+        if self._keeper.holds(path):
+            self.when_safe(partial(self._reopen, path))
+        else:
+            self.opening.read(path)
+
+    def _reopen(self, path: Path) -> None:
+        self._keeper.release()
+        self._reopens = True
+        self.opening.read(path)
+
+    def _keep_again(self) -> None:
+        """Keep what is open as unsaved work where its project could not be read anew."""
+        if self._reopens and self.opening.path is None:
+            self._reopens = False
+            self._keeper.keep()
+
+    def _confirm(self, opened: Opened) -> None:
+        """Ask for unsaved edits, then open what was read."""
+        self._newest, self._reopens = opened.wish, False
+        self.when_safe(partial(self._open, opened), opened.drop)
+
+    def _open(self, opened: Opened) -> None:
+        """Open what was read in place of what is open."""
+        if opened.wish is not self._newest or self.opening.path is not None:
+            opened.drop()  # while its predecessor was being saved, something else was chosen
+            return
+        path, left_over = opened.wish.path, opened.wish.left_over
+        if opened.project is not None:
+            self._keeper.open(opened)
+        else:
+            self._session.open(opened.take, path, opened.measured[0])
+        if not left_over:
+            self._settings.remember(path)
+        self.opened.emit()
+        if opened.project is not None and opened.project.read_only:
+            self.told.emit(
+                f"{path.name} cannot be written here; your edits are kept as unsaved work.",
+                "Save it under another name.",
+            )
+
+    def take_in(self, path: Path) -> None:
+        """Open or attach a file, by its ending."""
+        ending = path.suffix.lower()
+        if ending in media.ENDINGS:
+            self._media.attach("audio", path)
+        elif ending in media.FILM_ENDINGS:
+            self._media.attach("video", path)
+        elif ending in cues.READERS:
+            self.cues_dropped.emit(path)
+        elif ending in CAPTURES:
+            self.capture_dropped.emit(path)
+        else:
+            self.load(path)
+
+    def open_take(self) -> None:
+        """Choose a file to open."""
+        endings = " ".join(f"*{ending}" for entry in FORMATS for ending in entry.endings)
+        kinds = f"Takes and projects ({endings} *{ENDING})"
+        name, _ = QFileDialog.getOpenFileName(self._window, "Open", "", kinds)
+        if name:
+            self.load(Path(name))
+
+    def save(self) -> bool:
+        """Save the project where it was saved before, or ask where; returns whether it is on its way."""
+        return self._save_to(self._keeper.path) if self._keeper.path else self.save_as()
+
+    def save_as(self) -> bool:
+        """Choose a file and save the project: the original, every edit, and what can be undone."""
+        stem = Path(self._session.name).stem
+        kind = f"Retake project (*{ENDING})"
+        name, _ = QFileDialog.getSaveFileName(self._window, "Save the project", self._beside(f"{stem}{ENDING}"), kind)
+        return bool(name) and self._save_to(Path(name).with_suffix(ENDING))
+
+    def export(self) -> bool:
+        """Choose a file and write the edited take as other programs read it."""
+        stem = Path(self._session.name).stem
+        kinds = ";;".join(f"{entry.title} (*{entry.endings[0]})" for entry in FORMATS)
+        name, _ = QFileDialog.getSaveFileName(
+            self._window, "Export the take", self._beside(f"{stem}_edited.csv"), kinds
+        )
+        if not name:
+            return False
+        path = Path(name) if Path(name).suffix else Path(name).with_suffix(".csv")
+        try:
+            write_take(self._session.take, path)
+        except EngineError as error:
+            self.told.emit(error.sentence, error.advice)
+            return False
+        self._settings.remember(path)
+        return True
+
+    def open_recording(self, take: Take) -> None:
+        """Open what was recorded live, unless edits would be lost."""
+
+        def show() -> None:
+            self._session.open(take, None)
+            self._keeper.keep()
+            self.opened.emit()
+
+        self.when_safe(show)
+
+    def load_character(self) -> None:
+        """Choose a head to show the take on, and to carry it to by default; none goes back to the bundled one."""
+        kinds = "Heads (*.npz *.glb *.gltf *.obj)"
+        name, _ = QFileDialog.getOpenFileName(self._window, "Show on another head", "", kinds)
+        self.character_chosen.emit(Path(name) if name else None)
+
+    def when_safe(self, then: Callable[[], None], otherwise: Callable[[], None] = lambda: None) -> None:
+        """Do what closes the open take: at once, or when its edits are saved, or never, as the user says."""
+        if not self._keeper.when_idle(partial(self._ask, then, otherwise)):
+            self.told.emit(f"{self._session.name} is being saved; then it is closed.", "You may go on working.")
+
+    def _ask(self, then: Callable[[], None], otherwise: Callable[[], None]) -> None:
+        if not self._session.edited:
+            then()
+            return
+        answer = QMessageBox.question(
+            self._window,
+            "Unsaved edits",
+            f"{self._session.name} has edits that are not saved.",
+            Answer.Save | Answer.Discard | Answer.Cancel,
+        )
+        if answer == Answer.Discard:
+            self._keeper.forget()
+            then()
+        elif answer == Answer.Save and self.save():
+            self.when_safe(then, otherwise)
+        else:
+            otherwise()
+
+    def offer_left_over(self) -> None:
+        """Offer the work of a program that ended early."""
+        left = self._keeper.left_over()
+        if not left:
+            return
+        listed = "\n".join(entry.sentence for entry in left)
+        box = QMessageBox(self._window)
+        box.setWindowTitle("Unsaved work")
+        box.setText(f"Retake ended before this was saved:\n\n{listed}")
+        restore = box.addButton("Restore", QMessageBox.ButtonRole.AcceptRole)
+        discard = box.addButton("Discard", QMessageBox.ButtonRole.DestructiveRole)
+        box.addButton("Later", QMessageBox.ButtonRole.RejectRole)
+        box.exec()
+        if box.clickedButton() is restore:
+            self.opening.read(left[0].path, left_over=True)
+        elif box.clickedButton() is discard:
+            try:
+                for entry in left:
+                    self._keeper.discard(entry)
+            except EngineError as error:
+                self.told.emit(error.sentence, error.advice)
+
+    def _save_to(self, path: Path) -> bool:
+        self._media.settle_in(path.parent)
+        self._keeper.save_as(path)
+        return True
+
+    def _beside(self, name: str) -> str:
+        """Return a name in the folder of what is open; the program's own demo take is no place to save to."""
+        from engine.performance import demo
+
+        path = self._session.path
+        folder = path.parent if path is not None and path != demo.BUNDLED else Path.home()
+        return str(folder / name)

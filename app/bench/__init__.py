@@ -1,0 +1,1 @@
+"""Every speed the program promises, measured beside its goal: `retake bench`."""

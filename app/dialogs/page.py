@@ -1,0 +1,63 @@
+"""A page to read beside the work: the list of keys, and what this is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from html import escape
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QDialog, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from app.theme import GRID
+
+COLUMNS = 3
+
+
+class Page(QDialog):
+    """Rich text in a window of its own, which goes with Escape or Close.
+
+    Parameters
+    ----------
+    title, text : what it is called and what it says
+    parent : the window
+    """
+
+    def __init__(self, title: str, text: str, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(title)
+        self.setModal(False)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.text = QLabel(text)
+        self.text.setTextInteractionFlags(
+            Qt.TextInteractionFlag.TextSelectableByMouse
+        )  # versions and paths are for copying
+        column = QVBoxLayout(self)
+        column.setContentsMargins(3 * GRID, 2 * GRID, 3 * GRID, 2 * GRID)
+        column.setSpacing(2 * GRID)
+        column.addWidget(self.text)
+        column.addWidget(closing(self), alignment=Qt.AlignmentFlag.AlignRight)
+
+
+def closing(dialog: QDialog) -> QPushButton:
+    """Return the button that closes a dialog."""
+    button = QPushButton("Close")
+    button.setProperty("primary", True)
+    button.clicked.connect(dialog.close)
+    return button
+
+
+def in_columns(groups: Mapping[str, Sequence[tuple[str, str]]]) -> str:
+    """Return named groups of pairs as rich text, in columns of about one height; a group is not torn apart."""
+    full = sum(1 + len(rows) for rows in groups.values()) / COLUMNS
+    columns, used = [""] * COLUMNS, 0.0
+    for name, rows in groups.items():
+        column = min(COLUMNS - 1, int((used + len(rows) / 2) / full))
+        columns[column] += _table(name, rows)
+        used += 1 + len(rows)
+    cells = "".join(f"<td style='padding-right: {3 * GRID}px'>{column}</td>" for column in columns)
+    return f"<table><tr>{cells}</tr></table>"
+
+
+def _table(name: str, rows: Sequence[tuple[str, str]]) -> str:
+    cells = (f"<tr><td style='padding: 1px 16px 1px 0'>{escape(a)}</td><td>{escape(b)}</td></tr>" for a, b in rows)
+    return f"<p><b>{escape(name)}</b></p><table>{''.join(cells)}</table>"

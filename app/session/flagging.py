@@ -1,0 +1,101 @@
+"""Flags kept up to date on a thread of their own: all of them when a take is opened, near the edit after one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from PySide6.QtCore import QObject
+
+from app.background import LatestWins
+from app.session.session import Change, Session
+from engine.quality import Flag, flags_after, flags_of, seen_of
+from engine.speech.lane import VisemeLane
+from engine.take import Array, Take
+
+Frames = tuple[int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """What to look at, and where: `touched` since `known` was found, or everywhere where that is None."""
+
+    number: int
+    take: Take
+    original: Take
+    controls: Array
+    original_controls: Array
+    asked: Array
+    visemes: VisemeLane | None
+    known: tuple[Flag, ...] | None
+    touched: Frames
+
+
+class Flagging(QObject):
+    """Looks again after each edit and tells the session.
+
+    Parameters
+    ----------
+    session : whose take is looked at
+    """
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self._known: tuple[Flag, ...] | None = None
+        self._number = 0
+        self._touched: list[tuple[int, Frames]] = []  # by the look that it was first part of; not in `_known` yet
+        self._work = LatestWins(_look, name="flags")
+        self._work.done.connect(self._arrived)
+        session.changed.connect(self._on_change)
+        self._on_change(Change.TAKE)
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is being looked at."""
+        return self._work.idle
+
+    def close(self) -> None:
+        """End the thread."""
+        self._session.changed.disconnect(self._on_change)
+        self._work.stop()
+
+    def _on_change(self, change: Change) -> None:
+        if change & Change.TAKE:
+            self._known, self._touched = None, []
+            self._submit((0, len(self._session.take)))
+        elif change & Change.CURVES:
+            self._submit(self._session.touched)
+        elif change & Change.VISEMES:
+            self._submit((0, 0))
+
+    def _submit(self, touched: Frames) -> None:
+        session = self._session
+        self._number += 1
+        self._touched.append((self._number, touched))
+        everywhere = min(start for _, (start, _) in self._touched), max(stop for _, (_, stop) in self._touched)
+        self._work.submit(
+            _Look(
+                self._number,
+                session.take,
+                session.original,
+                session.controls,
+                session.original_controls,
+                session.asked,
+                session.visemes,
+                self._known,
+                everywhere,
+            )
+        )
+
+    def _arrived(self, look: _Look, flags: tuple[Flag, ...]) -> None:
+        if look.original is not self._session.original:
+            return  # that take is closed
+        self._known = flags
+        self._touched = [entry for entry in self._touched if entry[0] > look.number]
+        self._session.set_flags(flags)
+
+
+def _look(look: _Look) -> tuple[Flag, ...]:
+    controls = look.controls, look.original_controls
+    seen = seen_of(look.take, look.original, look.asked, look.visemes, controls=controls)
+    return flags_of(seen) if look.known is None else flags_after(look.known, seen, look.touched)

@@ -1,0 +1,148 @@
+"""Reading takes and projects beside the window: what is open stays usable until the new one is there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtGui import QUndoCommand
+
+from app.background import LatestWins
+from app.session.commands import restored
+from app.session.session import Session
+from engine.controls import bundled_measurer
+from engine.errors import EngineError
+from engine.formats import read_take
+from engine.project import ENDING, Project, Replayed, replay
+from engine.take import Array, Take
+
+
+@dataclass(frozen=True, eq=False)
+class Wish:
+    """A file that shall be opened; `left_over` where it is the unsaved work of a program that ended early."""
+
+    path: Path
+    left_over: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """A file that was read, with all that takes long about showing it.
+
+    Attributes
+    ----------
+    wish : what was asked for
+    take : the take as it was recorded
+    measured : its controls, (frames, 8) mm, and those of the take as edited
+    project : the open project; None where the file is a take
+    state, steps : what the edits of a project come to, and their commands
+    """
+
+    wish: Wish
+    take: Take
+    measured: tuple[Array, Array]
+    project: Project | None = None
+    state: Replayed | None = None
+    steps: tuple[QUndoCommand, ...] = ()
+
+    def drop(self) -> None:
+        """Let go of the file: something else was opened."""
+        if self.project is not None:
+            self.project.close()
+
+
+def opened(session: Session, wish: Wish, report: Callable[[float], None] = lambda _: None) -> Opened:
+    """Read a file for a session; raises `EngineError`, or what `report` raises, which is told the share that is done."""
+    report(0.0)
+    if not wish.left_over and wish.path.suffix.lower() != ENDING:
+        take = read_take(wish.path, report)
+        return Opened(wish, take, 2 * (_measured(take),))
+    project = Project.open(wish.path)
+    try:
+        report(0.0)
+        contents = project.contents
+        state = replay(contents)
+        measured = _measured(contents.original), _measured(state.take)
+        steps = tuple(restored(session, contents, state))
+        report(1.0)
+    except BaseException:
+        project.close()
+        raise
+    return Opened(wish, contents.original, measured, project, state, steps)
+
+
+def _measured(take: Take) -> Array:
+    controls = bundled_measurer().measure(take.weights)
+    controls.flags.writeable = False
+    return controls
+
+
+class Opening(QObject):
+    """Reads one file at a time on a thread of its own; a newer wish ends the older one.
+
+    Parameters
+    ----------
+    session : which the commands of a project are made for
+    """
+
+    done = Signal(object)  # an Opened, which is the receiver's to keep or to drop
+    failed = Signal(str, str)  # sentence, advice
+    progress = Signal(float)  # the share of a take that is read, from the thread
+    changed = Signal()  # another file is read, or none
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self._session = session
+        self._wish: Wish | None = None
+        self._work = LatestWins(self._read, name="opening")
+        self._work.done.connect(self._arrived)
+        self._work.failed.connect(self._refused)
+
+    @property
+    def path(self) -> Path | None:
+        """The file that is read."""
+        return self._wish.path if self._wish else None
+
+    def read(self, path: Path, *, left_over: bool = False) -> None:
+        """Read a file in place of the one that is read; returns at once, and `done` or `failed` follows."""
+        self._wish = Wish(path, left_over)
+        self._work.submit(self._wish)
+        self.changed.emit()
+
+    def stop(self) -> None:
+        """Read nothing any more; what is open stays."""
+        if self._wish is not None:
+            self._wish = None
+            self.changed.emit()
+
+    def close(self) -> None:
+        """Stop, and end the thread."""
+        self._work.done.disconnect(self._arrived)
+        self._work.done.connect(lambda _, read: read.drop())
+        self.stop()
+        self._work.stop()
+
+    def _read(self, wish: Wish) -> Opened:
+        """Read a file, unless it is wished no more; runs on the thread."""
+
+        def report(share: float) -> None:
+            if wish is not self._wish:
+                raise EngineError("This is not wanted any more.")
+            self.progress.emit(share)
+
+        return opened(self._session, wish, report)
+
+    def _arrived(self, wish: Wish, read: Opened) -> None:
+        if wish is self._wish:
+            self._wish = None
+            self.done.emit(read)
+            self.changed.emit()
+        else:
+            read.drop()
+
+    def _refused(self, wish: Wish, sentence: str, advice: str) -> None:
+        if wish is self._wish:
+            self.stop()
+            self.failed.emit(sentence, advice)

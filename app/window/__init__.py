@@ -1,0 +1,1 @@
+"""The window: how it starts, its frame, and what puts the panels together."""

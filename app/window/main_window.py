@@ -1,0 +1,388 @@
+"""The window: puts the panels together and carries out the actions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
+from PySide6.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QMainWindow,
+    QScrollArea,
+    QSplitter,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app import theme
+from app.actions.edit import EditActions
+from app.actions.file import FileActions
+from app.actions.media import MediaActions
+from app.actions.menus import Menus
+from app.actions.settings import SettingsActions
+from app.actions.time import TimeActions
+from app.actions.viseme import VisemeActions
+from app.clean.section import CleanSection
+from app.curves.lane import GUTTER_PX
+from app.curves.panel import CurvesPanel
+from app.curves.tools import TOOLS
+from app.inspector.brush import BrushSection
+from app.inspector.facts import FactsSection
+from app.inspector.media import MediaSection
+from app.inspector.panel import Inspector
+from app.inspector.smooth import SmoothSection
+from app.inspector.value import ValueSection
+from app.live.section import LiveSection
+from app.notes.section import NotesSection
+from app.pins.section import PinsSection
+from app.playback.media import Media
+from app.playback.transport import Transport
+from app.preview.panel import PreviewPanel
+from app.preview.reference import ReferencePanel
+from app.retarget.actions import RetargetActions
+from app.session import MEDIA, Change, Session
+from app.session.flagging import Flagging
+from app.session.inference import Inference
+from app.session.keeper import Keeper
+from app.settings import Settings
+from app.spans.filling import Filling
+from app.spans.section import SpansSection
+from app.theme import GRID
+from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
+from app.window.keyboard import Keyboard
+from app.window.missing import MissingMedia
+from app.window.notices import Notices
+from app.window.status import StatusBar
+from engine.take import Take
+
+
+class MainWindow(QMainWindow):
+    """One window on one take.
+
+    Parameters
+    ----------
+    take, path : what to open, and the file it came from
+    settings : what is remembered
+    unsaved : the folder for unsaved work; the user's own without one
+    """
+
+    def __init__(
+        self,
+        take: Take,
+        path: Path | None = None,
+        settings: Settings | None = None,
+        *,
+        unsaved: Path | None = None,
+    ) -> None:
+        super().__init__()
+        self.settings = settings or Settings()
+        self.colours = theme.palette(self.settings.theme)
+        self.session = Session(take)
+        self.keeper = Keeper(self.session, unsaved)
+        self.inference = Inference(self.session)
+        self.transport = Transport(self.session)
+        self.media = Media(self.session, self.transport, settings=self.settings)
+        self.files = FileActions(self.session, self.keeper, self.media, self.settings, self)
+        self.sound = MediaActions(self.session, self.media, self)
+        self.status = StatusBar(self.session, self.keeper, self.files.opening, self.media)
+        self.notices, self.missing = Notices(), MissingMedia()
+        self.preview = PreviewPanel(self.session, self.inference)
+        self.reference = ReferencePanel(self.session)
+        self.curves = CurvesPanel(self.session, self.inference, self.colours)
+        self.timeline = Timeline(self.session, self.colours, gutter_px=GUTTER_PX)
+        self.filling = Filling(self.session)
+        self.edits = EditActions(self.session, self.inference, self.curves, self.filling)
+        self.flagging = Flagging(self.session)
+        self.visemes = VisemeActions(self.session, self.timeline.visemes, self)
+        self.time = TimeActions(self.session, self.transport, self.filling)
+        self.brush, self.value = BrushSection(self.session), ValueSection(self.session)
+        self.pins, self.clean = PinsSection(self.session, self.inference), CleanSection(self.session, self.inference)
+        self.smoothing, self.facts = SmoothSection(self.session), FactsSection(self.session)
+        self.spans = SpansSection(self.session, self.filling)
+        self.live = LiveSection(self.session, self.keeper.folder)
+        self.attached = MediaSection(self.session)
+        self.notes = NotesSection(self.session)
+        self.retarget = RetargetActions(self.session, self)
+        sections = (
+            self.brush,
+            self.value,
+            self.pins,
+            self.clean,
+            self.live,
+            *self.retarget.sections,
+            self.smoothing,
+            self.spans,
+            self.facts,
+            self.attached,
+            self.notes,
+        )
+        self.inspector = Inspector(self.session, sections)
+        self._closed = False
+        self.setAcceptDrops(True)
+        self.menus = Menus(self, self.settings, self._do, self.files.load)
+        self.actions_by_name = self.menus.actions
+        self.preferences = SettingsActions(self.settings, self.menus, self.media, self)
+        self._show_tool()
+        self._lay_out()
+        self._connect()
+        self.preferences.apply_all()
+        self.resize(1440, 900)
+        self.session.open(take, path)
+        self._show_opened()
+
+    # --- building
+
+    def _do(self, name: str) -> None:
+        owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.retarget, self.preferences)
+        owner = next(each for each in owners if name in type(each).__dict__)
+        getattr(owner, name)()
+
+    def _lay_out(self) -> None:
+        self.preview.add_beneath(self.reference)
+        lanes = QFrame()
+        lanes.setProperty("panel", True)
+        stack = QVBoxLayout(lanes)
+        stack.setContentsMargins(1, 6, 1, 4)
+        stack.setSpacing(2)
+        stack.addWidget(self.timeline)
+        area = QScrollArea()
+        area.setWidgetResizable(True)
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
+        area.setWidget(self.curves)
+        stack.addWidget(area, 1)
+        scroll = QHBoxLayout()
+        scroll.setContentsMargins(GUTTER_PX, 0, GRID + SCROLL_PX, 0)
+        scroll.addWidget(TimeScroll(self.session))
+        stack.addLayout(scroll)
+        split = QSplitter(Qt.Orientation.Horizontal)
+        split.setHandleWidth(GRID)
+        split.setChildrenCollapsible(False)
+        split.addWidget(self.preview)
+        split.addWidget(lanes)
+        split.setStretchFactor(0, 2)
+        split.setStretchFactor(1, 3)
+        split.setSizes([470, 710])
+        middle = QHBoxLayout()
+        middle.setSpacing(GRID)
+        middle.addWidget(split, 1)
+        middle.addWidget(self.inspector)
+        central = QWidget()
+        central.setObjectName("central")
+        column = QVBoxLayout(central)
+        column.setContentsMargins(GRID, 0, GRID, GRID)
+        column.setSpacing(GRID)
+        column.addWidget(self.menus.toolbar())
+        column.addWidget(self.notices)
+        column.addWidget(self.missing)
+        column.addLayout(middle, 1)
+        column.addWidget(self.status)
+        self.setCentralWidget(central)
+
+    def _connect(self) -> None:
+        self.session.changed.connect(self._on_change)
+        self.inference.ready.connect(lambda: self.status["engine"].setText(""))
+        shown = (self.preview, self.media, self.reference, self.live, self.retarget)
+        for part in (*shown, self.inference, self.filling, self.keeper, self.visemes, self.timeline.visemes):
+            part.failed.connect(self.notices.tell)
+        self.preview.timed.connect(self.status.timed)
+        self._connect_media()
+        self.notes.author = lambda: self.settings.author
+        self.preferences.themed.connect(self._wear)
+        for clock in (self.timeline, self.status):
+            self.preferences.counted.connect(clock.count_in_frames)
+        self.transport.changed.connect(self._show_transport)
+        self.value.close_here.connect(self.edits.close_here)
+        self.value.typed.connect(self.edits.set_value)
+        self.facts.again.connect(self.edits.again)
+        self.smoothing.moved.connect(self.edits.preview_smoothing)
+        self.smoothing.kept.connect(self.edits.smooth)
+        self.smoothing.dropped.connect(self.inference.cancel)
+        self.edits.cutoff_hz = self.smoothing.cutoff.value
+        self.edits.let_go = self.timeline.visemes.drop
+        self.edits.told.connect(self.status["notice"].setText)
+        self.time.looping = self.actions_by_name["loop"].isChecked
+        self.live.face.connect(self.preview.show_live)
+        self.preview.live_timed.connect(self.live.on_screen)
+        self.live.recorded.connect(self.files.open_recording)
+        self.retarget.shown.connect(self.preview.show_sides)
+        self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
+        self.preview.picked.connect(self.retarget.pick)
+        self.preview.dot_clicked.connect(self.retarget.placing.choose)
+        self.edits.stop_else = self.retarget.retargeting.cancel
+        self.files.capture_dropped.connect(self.retarget.take_in)
+        self.files.character_chosen.connect(self.retarget.retargeting.show_on)
+        self.retarget.retargeting.head_read.connect(self.preview.show_character)
+        self.retarget.retargeting.told.connect(self.status["notice"].setText)
+        self.keeper.saved.connect(self._show_saved)
+        self.keeper.mended.connect(self.notices.withdraw)
+        self.timeline.visemes.wanted.connect(self._do)
+        self.files.cues_dropped.connect(self.visemes.attach)
+        self.files.told.connect(self.notices.tell)
+        self.files.opened.connect(self._show_opened)
+        self.filling.changed.connect(self._show_filling)
+        self.spans.refused.connect(self.notices.tell)
+        self.timeline.marked.connect(self.spans.mark)
+        self.spans.strip.wanted.connect(self.preview.draw_strip)
+        self.preview.strip_drawn.connect(self.spans.strip.show_picture)
+        self.session.undo.indexChanged.connect(self._show_undo)
+        self._show_undo()
+        self._show_missing()
+        self._show_filling()
+        self._keyboard = Keyboard(self, self.preview)
+
+    def _connect_media(self) -> None:
+        self.media.missing_changed.connect(self._show_missing)
+        self.missing.locate.connect(self.sound.locate)
+        self.missing.accept.connect(self.sound.use_found)
+        self.missing.detach.connect(self.media.detach)
+        self.attached.detached.connect(self.media.detach)
+        self.reference.detached.connect(self.sound.detach_video)
+        self.attached.moved.connect(self.media.move)
+        self.timeline.slid.connect(self.media.settle)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Load the networks once the window can be seen."""
+        super().showEvent(event)
+        self.curves.setFocus()
+        QTimer.singleShot(0, self.inference.warm_up)
+
+    # --- opening and closing
+
+    def load(self, path: Path) -> None:
+        """Read a take or a project beside what is open, and open it when it is read; returns at once."""
+        self.files.load(path)
+
+    def _show_opened(self) -> None:
+        self.transport.run(0.0)
+        self.notices.hide()
+        self.status["notice"].setText(" ".join(self.session.take.notices))
+        self._show_title()
+        self.status.show_take()
+
+    def _show_saved(self, *_: object) -> None:
+        self.notices.hide()
+        self._show_title()
+
+    def _show_missing(self) -> None:
+        self.missing.show_missing(self.media.missing)
+        self.actions_by_name["locate_media"].setEnabled(bool(self.media.missing))
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        """Accept files."""
+        if event.mimeData().hasUrls():
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        """Open the first file that was dropped."""
+        paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
+        if paths:
+            self.files.take_in(paths[0])
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Ask for unsaved edits, wait until all is written, then end the threads."""
+        if not self._closed:
+            self.files.when_safe(self._leave)
+        event.setAccepted(self._closed)
+
+    def _leave(self) -> None:
+        self.shut_down()
+        self._closed = True
+        self.close()
+
+    def shut_down(self) -> None:
+        """End the threads; the window cannot be used after."""
+        self._keyboard.let_go()
+        self.transport.run(0.0)
+        self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
+        self.files.opening.close()
+        self.keeper.close()
+        self.inference.close()
+        self.media.close()
+        self.reference.close_reader()
+        self.filling.close()
+        self.flagging.close()
+        self.visemes.close()
+        self.live.shut_down()
+        self.retarget.retargeting.close()
+        self.preview.close_renderer()
+        self.preferences.close()
+
+    # --- the window
+
+    def quit(self) -> None:
+        """End the program; what is not saved is kept for the next start."""
+        self.close()
+
+    def fill(self) -> None:
+        """Fill the chosen span, or the selection."""
+        self.spans.fill()
+
+    def note(self) -> None:
+        """Type a note on the frame at the playhead."""
+        self.notes.entry.setFocus()
+
+    def _show_filling(self) -> None:
+        # Enter belongs to the buttons too, unless there is a variant to keep
+        self.actions_by_name["accept"].setEnabled(bool(self.filling.variants))
+        self.actions_by_name["fill"].setEnabled(not self.filling.busy)
+
+    def mute(self) -> None:
+        """Play with or without sound."""
+        self.media.mute(self.actions_by_name["mute"].isChecked())
+
+    def _show_tool(self) -> None:
+        for name in TOOLS:
+            self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
+        self.actions_by_name["hit_exactly"].setChecked(self.session.exact)
+        self.actions_by_name["rest_follows"].setChecked(self.session.follow)
+        self.actions_by_name["show_removed"].setChecked(self.session.shows_removed)
+
+    def _wear(self, colours: theme.Palette) -> None:
+        self.colours = colours
+        self.setStyleSheet(theme.style_sheet(colours))
+        self.curves.paint_with(colours)
+        self.timeline.paint_with(colours)
+
+    # --- showing
+
+    def _on_change(self, change: Change) -> None:
+        if change & (Change.TAKE | Change.CURVES | Change.SAVED):
+            self.setWindowModified(self.session.edited)
+        if change & (Change.TAKE | Change.MARKS | Change.MEDIA):
+            for kind in MEDIA:
+                self.actions_by_name[f"detach_{kind}"].setEnabled(self.session.marks.medium(kind) is not None)
+        if change & (Change.TAKE | Change.VISEMES):
+            for name in ("shift_visemes", "restore_visemes", "remove_visemes"):
+                self.actions_by_name[name].setEnabled(self.session.visemes is not None)
+        if change & (Change.TAKE | Change.MARKS | Change.SAVED):
+            self._show_hints()
+        if change & Change.TOOL:
+            self._show_tool()
+
+    def _show_title(self, *_: object) -> None:
+        self.setWindowTitle(f"{self.session.name}[*] - Retake")
+        self.setWindowModified(self.session.edited)
+
+    def _show_hints(self) -> None:
+        session, stack = self.session, self.session.undo
+        self.menus.show_hints(changed=stack.count() > 0, saved=not session.edited, hatched=bool(session.marks.spans))
+
+    def _show_undo(self, *_: int) -> None:
+        stack = self.session.undo
+        self._show_hints()
+        for name, able, text in (
+            ("undo", stack.canUndo(), stack.undoText()),
+            ("redo", stack.canRedo(), stack.redoText()),
+        ):
+            action = self.actions_by_name[name]
+            action.setEnabled(able)
+            action.setText(f"{name.capitalize()} {text}".strip())
+            action.setToolTip(f"{action.text()}  ({action.shortcut().toString()})")
+
+    def _show_transport(self) -> None:
+        self.actions_by_name["play"].setChecked(self.transport.playing)
+        self.actions_by_name["play"].setIconText("❚❚" if self.transport.playing else "▶")

@@ -1,0 +1,116 @@
+"""The line at the bottom: what is open, where the playhead is, what plays, and whether all is saved."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel
+
+from app.playback.media import Media
+from app.session import Change, Session
+from app.session.keeper import Keeper
+from app.session.opening import Opening
+from app.theme import GRID
+from app.widgets.progress import Progress
+from engine.take import timecode
+
+NAMES = ("take", "rate", "length", "place", "notice", "engine", "sound", "saved", "speed")
+LATENCIES = 20  # that the median is taken of
+
+
+class StatusBar(QFrame):
+    """Labels by name, and the progress of a save and of a file that is read, each with a button that stops it.
+
+    Parameters
+    ----------
+    session, keeper, opening, media : what is told of
+    """
+
+    def __init__(self, session: Session, keeper: Keeper, opening: Opening, media: Media) -> None:
+        super().__init__()
+        self.setProperty("panel", True)
+        self._session, self._keeper, self._opening, self._media = session, keeper, opening, media
+        self._latencies_ms: list[float] = []
+        self.in_frames = False
+        self._labels = {name: QLabel() for name in NAMES}
+        self.saving = Progress("Stop saving", keeper.stop_saving)
+        self.opening = Progress("Stop opening", opening.stop)
+        self._lay_out()
+        self._labels["engine"].setText("loading networks…")
+        self["place"].setToolTip("Minutes, seconds and frames, and the frame counted from 0, at the playhead")
+        self["speed"].setToolTip("How long the face took to follow the mouse")
+        session.changed.connect(self._on_change)
+        keeper.saving_changed.connect(self._show_saving)
+        keeper.progress.connect(self.saving.advance)
+        opening.changed.connect(self._show_opening)
+        opening.progress.connect(self.opening.advance)
+        keeper.saved.connect(self.show_take)
+        media.device_changed.connect(self._show_sound)
+
+    def _lay_out(self) -> None:
+        row = QHBoxLayout(self)
+        row.setContentsMargins(GRID + 2, 3, GRID + 2, 3)
+        row.setSpacing(3 * GRID)
+        for name, label in self._labels.items():
+            label.setProperty("quiet", name != "take")
+            row.addWidget(label, 1 if name == "notice" else 0)
+            if name == "saved":
+                row.addWidget(self.saving)
+                row.addWidget(self.opening)
+
+    def __getitem__(self, name: str) -> QLabel:
+        return self._labels[name]
+
+    def show_take(self, *_: object) -> None:
+        """Tell what is open."""
+        take = self._session.take
+        self["take"].setText(self._session.name)
+        self["rate"].setText(f"{take.fps:g} fps")
+        self["length"].setText(
+            f"{len(take):,} {'frame' if len(take) == 1 else 'frames'} · {timecode(take.duration_s, take.fps)}"
+        )
+        self.show_place()
+        self._show_saved()
+
+    def show_place(self) -> None:
+        """Tell where the playhead is."""
+        frame, fps = self._session.playhead, self._session.take.fps
+        self["place"].setText(f"frame {frame:,}" if self.in_frames else f"{timecode(frame / fps, fps)} · {frame}")
+
+    def count_in_frames(self, on: bool) -> None:
+        """Tell time in frames, or in timecode too."""
+        self.in_frames = on
+        self.show_place()
+
+    def timed(self, spent_ms: float) -> None:
+        """Tell how long it took from the mouse to the picture."""
+        self._latencies_ms = [*self._latencies_ms[1 - LATENCIES :], spent_ms]
+        self["speed"].setText(f"drag → preview {np.median(self._latencies_ms):.0f} ms")
+
+    def _on_change(self, change: Change) -> None:
+        if change & (Change.TAKE | Change.PLAYHEAD):
+            self.show_place()
+        if change & (Change.TAKE | Change.CURVES | Change.SAVED):
+            self._show_saved()
+
+    def _show_saved(self) -> None:
+        saving, opening = self._keeper.saving, self._opening.path
+        saved = "saved" if self._keeper.path else ""
+        told = "edits not saved yet" if self._session.edited else saved
+        under_way = [f"saving {saving.name}…"] if saving else []
+        under_way += [f"opening {opening.name}…"] if opening else []
+        self["saved"].setText(" ".join(under_way) or told)
+
+    def _show_saving(self) -> None:
+        self.saving.follow(self._keeper.saving is not None)
+        self._show_saved()
+
+    def _show_opening(self) -> None:
+        self.opening.follow(self._opening.path is not None)
+        self._show_saved()
+
+    def _show_sound(self) -> None:
+        attached = self._session.audio is not None
+        self["sound"].setText((f"♪ {self._media.device}" if self._media.device else "♪ silent") if attached else "")
+        self["sound"].setToolTip(
+            "The loudspeaker that plays" if self._media.device else "No loudspeaker was found; time runs by the clock."
+        )

@@ -1,0 +1,59 @@
+"""A capture: tracked points over time, whatever file they came from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.errors import EditError
+from engine.take import Array
+
+FARTHEST_MM = 1e8
+SLOWEST_FPS, FASTEST_FPS = 0.01, 10_000.0
+TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+
+
+@dataclass(frozen=True, eq=False)
+class Markers:
+    """A capture: where each marker is in each frame.
+
+    Attributes
+    ----------
+    positions : (frames, n, 3) float64 mm; NaN where a marker was not seen
+    names : of the markers, each once
+    fps : frames per second
+    name : what to call the capture on screen
+    notices : sentences about the import that the user should see
+    """
+
+    positions: Array
+    names: tuple[str, ...]
+    fps: float
+    name: str = "untitled"
+    notices: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.positions.ndim != 3 or self.positions.shape[1:] != (len(self.names), 3) or not len(self.positions):
+            raise EditError("A capture needs at least one frame and three coordinates for each marker.")
+        twice = [name for index, name in enumerate(self.names) if name in self.names[:index]]
+        if twice:
+            raise EditError(f"The marker {twice[0]!r} is there twice.", "Rename or remove one of the two.")
+        if (np.abs(self.positions) > FARTHEST_MM).any():
+            raise EditError("A marker is further away than a face can be.", "Check the unit of the file.")
+        if not SLOWEST_FPS <= self.fps <= FASTEST_FPS:
+            raise EditError(
+                f"A capture needs a frame rate above zero and below {FASTEST_FPS:,.0f}; this one has {self.fps:g}.",
+                "Export it again with its rate.",
+            )
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+
+def unit_by_size(positions: Array) -> tuple[str, str]:
+    """Return the unit in which markers, (frames, n, 3), are as large as a face, and a sentence that says so."""
+    low, high = np.nanmin(positions, axis=1), np.nanmax(positions, axis=1)
+    extent = float(np.nanmedian((high - low).max(axis=1)))
+    unit = "m" if extent < 1.5 else "cm" if extent < 45 else "mm"
+    return unit, f"Positions were taken as {unit}: the markers span {extent:.3g} of them."

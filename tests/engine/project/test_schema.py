@@ -1,0 +1,108 @@
+"""Older versions of the file open with all they hold."""
+
+from __future__ import annotations
+
+import sqlite3
+import zlib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from engine.errors import EngineError
+from engine.project import Contents, Media, Note, Project, Span, schema
+from tests.engine.project.projects import MARKS, reopened
+
+# A file as the first version wrote it. Never to be changed: there are such files.
+FIRST_VERSION = """
+PRAGMA application_id = 1381256005;
+PRAGMA user_version = 1;
+CREATE TABLE take (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  name TEXT NOT NULL, fps REAL NOT NULL, start_s REAL NOT NULL, frames INTEGER NOT NULL,
+  weights BLOB NOT NULL, lost BLOB NOT NULL, rotations BLOB NOT NULL
+) STRICT;
+CREATE TABLE origin (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  header TEXT NOT NULL, rows INTEGER NOT NULL, timecode_bytes INTEGER NOT NULL, timecodes BLOB NOT NULL,
+  frames BLOB NOT NULL, recorded BLOB NOT NULL, lost BLOB NOT NULL,
+  decimals INTEGER NOT NULL, newline BLOB NOT NULL, swapped INTEGER NOT NULL
+) STRICT;
+CREATE TABLE edits (
+  place INTEGER PRIMARY KEY,
+  kind TEXT NOT NULL, title TEXT NOT NULL, inputs TEXT NOT NULL,
+  start INTEGER NOT NULL, frames INTEGER NOT NULL,
+  weights BLOB NOT NULL, controls TEXT NOT NULL, asked BLOB NOT NULL
+) STRICT;
+CREATE TABLE state (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  position INTEGER NOT NULL, verdict TEXT NOT NULL
+) STRICT;
+CREATE TABLE spans (
+  place INTEGER PRIMARY KEY,
+  start INTEGER NOT NULL, stop INTEGER NOT NULL, region TEXT NOT NULL, kind TEXT NOT NULL
+) STRICT;
+CREATE TABLE notes (
+  place INTEGER PRIMARY KEY,
+  frame INTEGER NOT NULL, author TEXT NOT NULL, time TEXT NOT NULL, text TEXT NOT NULL
+) STRICT;
+CREATE TABLE media (
+  place INTEGER PRIMARY KEY,
+  kind TEXT NOT NULL, path TEXT NOT NULL, sha256 TEXT NOT NULL
+) STRICT;
+"""
+
+
+def test_a_file_of_the_first_version_opens_with_all_it_holds(contents: Contents, tmp_path: Path) -> None:
+    path = tmp_path / "old.retake"
+    take, edit = contents.original, contents.edits[1]
+    database = sqlite3.connect(path)
+    database.executescript(FIRST_VERSION)
+    blobs = [zlib.compress(array.tobytes()) for array in (take.weights, take.lost, take.rotations)]
+    database.execute("INSERT INTO take VALUES (1, 'random', 30.0, 0.0, 40, ?, ?, ?)", blobs)
+    asked = edit.asked[:, [1, 0]]
+    blobs = [zlib.compress(edit.weights.tobytes()), zlib.compress(np.ascontiguousarray(asked).tobytes())]
+    database.execute(
+        "INSERT INTO edits VALUES (0, 'drag', 'pull', '{\"exact\": true}', ?, ?, ?, '[\"lips_horizontal\", \"gone\"]', ?)",
+        (edit.start, len(edit.weights), *blobs),
+    )
+    database.execute("INSERT INTO state VALUES (1, 1, 'approved')")
+    database.execute("INSERT INTO spans VALUES (0, 3, 9, 'face', 'user')")
+    database.execute("INSERT INTO notes VALUES (0, 5, 'Ana', '2024-05-06T07:08:09Z', 'here')")
+    database.execute("INSERT INTO media VALUES (0, 'audio', 'a.wav', 'cd')")
+    database.commit()
+    database.close()
+
+    found = reopened(path)
+    np.testing.assert_array_equal(found.original.weights, take.weights)
+    np.testing.assert_array_equal(found.edits[0].weights, edit.weights)
+    np.testing.assert_array_equal(found.edits[0].asked[:, 1], edit.asked[:, 1])  # the controls go by name
+    assert np.isnan(np.delete(found.edits[0].asked, 1, axis=1)).all()
+    assert found.edits[0].inputs == {"exact": True}
+    assert found.marks.media == (Media("audio", "a.wav", "cd", 0.0),)
+    assert (found.marks.spans, found.marks.pins, found.marks.verdict) == ((Span(3, 9),), (), "approved")
+    assert found.marks.notes == (Note(5, "Ana", "2024-05-06T07:08:09Z", "here"),)
+    opened = Project.open(path)  # it is of the newest version now, to the letter
+    assert schema.check(opened._database, path.name) == schema.VERSION
+    opened.put(replace(opened.contents, marks=MARKS))
+    opened.close()
+    assert reopened(path).marks == MARKS
+
+
+def test_each_older_version_has_a_way_to_the_next() -> None:
+    assert sorted(schema.MIGRATIONS) == list(range(1, schema.VERSION))
+    assert sorted(schema.SCHEMAS) == list(range(1, schema.VERSION + 1))
+
+
+def test_a_migration_cut_short_leaves_the_file_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "old.retake"
+    database = sqlite3.connect(path)
+    database.executescript(FIRST_VERSION)
+    database.close()
+    monkeypatch.setitem(schema.MIGRATIONS, 1, (*schema.MIGRATIONS[1], "DROP TABLE nowhere"))
+    with pytest.raises(EngineError):
+        Project.open(path)
+    database = sqlite3.connect(path)
+    assert schema.check(database, "old.retake") == 1
+    database.close()
