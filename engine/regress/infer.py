@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import torch
 from torch import Tensor
+from torch.nn.functional import pad
 
 from engine.controls import CONTROLS
 from engine.models.checkpoint import MODELS, load_model
@@ -153,8 +154,9 @@ class Regressor:
 
 def _held(curves: Array) -> Tensor:
     """Return curves, (frames, n), as (1, n, frames), the last frame held up to a multiple of the networks' pooling."""
-    held = np.pad(curves, ((0, -len(curves) % ALIGNMENT), (0, 0)), mode="edge")
-    return torch.from_numpy(held.T.astype(np.float32))[None]
+    held = torch.from_numpy(curves.T.astype(np.float32))[None]
+    missing = -len(curves) % ALIGNMENT
+    return pad(held, (0, missing), mode="replicate") if missing else held
 
 
 def load(folder: Path = MODELS) -> Regressor:
