@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +26,25 @@ EYES_MM = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0)
 LIPS = [CONTROL_INDEX["lips_vertical"]]
 LIDS = [CONTROL_INDEX["eyelid_right"], CONTROL_INDEX["eyelid_left"]]
 
-# Controls, (frames, 8) in mm, and the weights of shapes that no method makes, (frames, 52), to weights, (frames, 52).
-Method = Callable[[Array, Array], Array]
 Row = dict[str, Any]
 Report = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What an editor knows of the take whose controls it changes.
+
+    Attributes
+    ----------
+    kept : (frames, 52) weights of the shapes that no method makes, the others zero
+    controls : (frames, 8) mm, as recorded, whatever is asked instead
+    """
+
+    kept: Array
+    controls: Array
+
+
+Method = Callable[[Array, Known], Array]  # asked controls, (frames, 8) in mm, to weights, (frames, 52)
 
 
 def pieces_to_measure(data: Path | None) -> list[Piece]:
@@ -39,12 +55,17 @@ def pieces_to_measure(data: Path | None) -> list[Piece]:
 
 
 def methods(report: Report) -> dict[str, Method]:
-    """Return every method by row name; those that need the recorded takes only where these are."""
+    """Return every method by row name; those that need the recorded takes only where these are.
+
+    `full` knows the take that is edited, as in the editor: what its controls do there is not held to be too much. Without
+    that knowledge, from curves alone, it is `full_of_curves`; the rows of others are of curves alone.
+    """
     ours = infer.bundled()
     found: dict[str, Method] = {
         "regressor": lambda controls, _: ours.infer(controls, full=False),
-        "full": lambda controls, kept: ours.infer(controls, kept=kept),
-        "full_without_contacts": lambda controls, _: ours.infer(controls, land=False),
+        "full": full(ours),
+        "full_of_curves": lambda controls, take: ours.infer(controls, kept=take.kept),
+        "full_without_contacts": lambda controls, take: ours.infer(controls, original=take.controls, land=False),
     }
     for name in NAMES:
         found[name] = of_controls(importlib.import_module(f"engine.evaluate.baselines.{name}").load().infer)
@@ -55,17 +76,22 @@ def methods(report: Report) -> dict[str, Method]:
     return found
 
 
+def full(ours: infer.Regressor) -> Method:
+    """Return the full system as the editor uses it."""
+    return lambda controls, take: ours.infer(controls, kept=take.kept, original=take.controls)
+
+
 def of_controls(infer: Callable[[Array], Array]) -> Method:
     """Return a method that looks at controls alone."""
     return lambda controls, _: infer(controls)
 
 
-def kept_of(piece: Piece) -> Array:
-    """Return a piece's weights, (frames, 52), with the shapes of all areas zero: what an edit leaves as it was."""
+def known_of(piece: Piece) -> Known:
+    """Return what an edit leaves as it was in a piece, the shapes of all areas zero, and its recorded controls."""
     kept = np.array(piece.weights)
     for area in AREAS:
         kept[:, area.shape_columns] = 0.0
-    return kept
+    return Known(kept, bundled_measurer().measure(piece.weights))
 
 
 def played(method: Method, piece: Piece) -> Array:
@@ -73,7 +99,8 @@ def played(method: Method, piece: Piece) -> Array:
 
     Weights are held to 0..1, as the editor holds them; shapes of no area, gaze among them, stay as recorded.
     """
-    made = method(bundled_measurer().measure(piece.weights), kept_of(piece))
+    known = known_of(piece)
+    made = method(known.controls, known)
     whole = np.array(piece.weights)
     for area in AREAS:
         if piece.whole_face or not area.needs_whole_face:
@@ -133,4 +160,14 @@ def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
     return regress_figures.draw(data, folder, report)
 
 
-__all__ = ["EYES_MM", "MOUTH_MM", "kept_of", "measured_closures", "methods", "pieces_to_measure", "played", "table"]
+__all__ = [
+    "EYES_MM",
+    "MOUTH_MM",
+    "Known",
+    "known_of",
+    "measured_closures",
+    "methods",
+    "pieces_to_measure",
+    "played",
+    "table",
+]

@@ -12,7 +12,7 @@ from engine.anatomy import impossible
 from engine.controls import bundled_measurer
 from engine.corpus import Piece, data_folder, split, whole_faces
 from engine.evaluate.plausibility import Recorded, recorded
-from engine.evaluate.regress import Method, Report, kept_of, methods, pieces_to_measure
+from engine.evaluate.regress import Method, Report, known_of, methods, pieces_to_measure
 from engine.regress.areas import AREAS
 from engine.take import SHAPES, Array
 
@@ -73,8 +73,9 @@ def table(data: Path | None, report: Report) -> list[Row]:
 
 def requested(method: Method, ask: Request, piece: Piece) -> tuple[Array, Array]:
     """Return what was asked, (frames, 8) in mm, and the face a method makes of it, (frames, 52)."""
-    asked = ask(bundled_measurer().measure(piece.weights))
-    made = np.clip(method(asked, kept_of(piece)), 0.0, 1.0)
+    known = known_of(piece)
+    asked = ask(known.controls)
+    made = np.clip(method(asked, known), 0.0, 1.0)
     whole = np.array(piece.weights)
     for columns in (PARTS["mouth"], PARTS["eyes"]) if piece.whole_face else (PARTS["mouth"],):
         whole[:, columns] = made[:, columns]

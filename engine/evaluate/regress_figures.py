@@ -83,8 +83,8 @@ def _curves(pieces: list[Piece], known: dict[str, Method], folder: Path) -> Path
 
 def _closure_rates(pieces: list[Piece], known: dict[str, Method], folder: Path) -> Path:
     figure, axes = _axes(2, 2, (9, 6))
-    for name, method in known.items():
-        found = measured_closures([played(method, piece) for piece in pieces], pieces)
+    for name in (name for name in COLOURS if name in known):  # the rest are ours without a part of it
+        found = measured_closures([played(known[name], piece) for piece in pieces], pieces)
         for column, (part, closures) in enumerate(found.items()):
             for row, (rates, title) in enumerate(((closures.tpr, "kept"), (closures.fpr, "invented"))):
                 axis = axes[row, column]

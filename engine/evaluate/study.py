@@ -22,7 +22,7 @@ from engine.errors import AssetError
 from engine.evaluate.baselines import ridge
 from engine.evaluate.baselines.nearest import Nearest
 from engine.evaluate.baselines.parts import Areas, Material
-from engine.evaluate.regress import Method, figures_of, of_controls
+from engine.evaluate.regress import Method, figures_of, full, of_controls
 from engine.evaluate.regress_edits import REQUESTS, Judge
 from engine.formats.atomic import write_bytes
 from engine.models.checkpoint import MODELS
@@ -74,11 +74,14 @@ def _networks(training: Sequence[Piece], held: Sequence[Piece], settings: Settin
     unbound = Regressor({name: copy.deepcopy(network) for name, network in networks.items()})
     for network in unbound.networks.values():
         network.bound.fill_(torch.inf)
+        network.usual.fill_(torch.inf)
     return {
         "regressor": lambda controls, _: made.infer(controls, full=False),
-        "full": lambda controls, kept: made.infer(controls, kept=kept),
-        "without contacts": lambda controls, kept: made.infer(controls, kept=kept, land=False),
-        "without tempering": lambda controls, kept: unbound.infer(controls, kept=kept),
+        "full": full(made),
+        "without contacts": lambda controls, take: made.infer(
+            controls, kept=take.kept, original=take.controls, land=False
+        ),
+        "without tempering": full(unbound),
     }
 
 

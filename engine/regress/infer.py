@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
 import torch
+from torch import Tensor
+from torch.nn.functional import pad
 
 from engine.controls import CONTROLS
 from engine.models.checkpoint import MODELS, load_model
@@ -50,14 +52,33 @@ class Regressor:
         for network in networks.values():
             network.eval()
 
-    def infer(self, controls: Array, *, full: bool = True, land: bool = True, kept: Array | None = None) -> Array:
+    @cached_property
+    def limits(self) -> tuple[Array, Array]:
+        """The lowest and the highest that each of the eight controls, in mm, was recorded at."""
+        low, high = np.full(len(CONTROLS), -np.inf), np.full(len(CONTROLS), np.inf)
+        for area in self._areas(extended=False):
+            network = self.networks[area.name]
+            low[area.control_columns] = np.maximum(low[area.control_columns], network.low.numpy().ravel())
+            high[area.control_columns] = np.minimum(high[area.control_columns], network.high.numpy().ravel())
+        return low, high
+
+    def infer(
+        self,
+        controls: Array,
+        *,
+        full: bool = True,
+        land: bool = True,
+        kept: Array | None = None,
+        original: Array | None = None,
+    ) -> Array:
         """Return weights, (frames, 52) float64 in 0..1, of controls, (frames, 8), or 14 with the extended ones.
 
         `full=False` stops at the regressor and is not clamped; `land=False` leaves out what the full system does for
         contacts. Shapes that no given control speaks of, gaze without its controls, are as in `kept`, (frames, 52), or
-        zero without it: where the eyes look moves the lids too.
+        zero without it: where the eyes look moves the lids too. What the curves of an `original`, (frames, 8 or 14), do
+        themselves is neither tempered nor taken for a mistake; without one, what people were recorded to do.
         """
-        return self.infer_range(controls, 0, len(controls), full=full, land=land, kept=kept)
+        return self.infer_range(controls, 0, len(controls), full=full, land=land, kept=kept, original=original)
 
     def infer_range(
         self,
@@ -68,6 +89,7 @@ class Regressor:
         full: bool = True,
         land: bool = True,
         kept: Array | None = None,
+        original: Array | None = None,
         answers: Answers | None = None,
         remember: bool = False,
     ) -> Array:
@@ -79,14 +101,25 @@ class Regressor:
         last = min(len(controls), -(-(stop + REACH) // ALIGNMENT) * ALIGNMENT)
         weights = np.zeros((stop - start, len(SHAPES))) if kept is None else np.array(kept[start:stop])
         rows = slice(start - first, stop - first)
-        trust = self._fill(weights, controls[first:last], rows, full=full, answers=answers, remember=remember)
+        seen = (controls[first:last], None if original is None else original[first:last])
+        trust = self._fill(weights, *seen, rows, full=full, answers=answers, remember=remember)
         if not full:
             return weights
         made = np.clip(weights, 0.0, 1.0)
-        return contacts.met(made, controls[start:stop], trust) if land else made
+        if not land:
+            return made
+        return contacts.met(made, controls[start:stop], trust, None if original is None else original[start:stop])
 
     def _fill(
-        self, weights: Array, controls: Array, rows: slice, *, full: bool, answers: Answers | None, remember: bool
+        self,
+        weights: Array,
+        controls: Array,
+        original: Array | None,
+        rows: slice,
+        *,
+        full: bool,
+        answers: Answers | None,
+        remember: bool,
     ) -> Array:
         """Put what the networks say of some rows of controls into weights, (rows, 52).
 
@@ -96,30 +129,34 @@ class Regressor:
         for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
             asked = controls[:, area.control_columns]
             found = answers.find(area.name, asked) if answers is not None and full else None
-            said, trusted = found or self._ask(area.name, asked, rows, full=full)
+            known = None if original is None else original[:, area.control_columns]
+            said, trusted = found or self._ask(area.name, asked, known, rows, full=full)
             if answers is not None and remember and found is None:
                 answers.of.setdefault(area.name, []).append((asked, said, trusted))
             weights[:, area.shape_columns] = said
             trust[:, contacts.of_area(area.name)] = trusted
         return trust
 
-    def _ask(self, area: str, asked: Array, rows: slice, *, full: bool) -> tuple[Array, Array]:
-        """Return an area's weights, (rows, shapes), of its curves, (frames, controls), and the trust in its contacts.
-
-        The last frame is held up to a multiple of the network's pooling.
-        """
-        frames, network = len(asked), self.networks[area]
-        held = np.pad(asked, ((0, -frames % ALIGNMENT), (0, 0)), mode="edge")
+    def _ask(self, area: str, asked: Array, original: Array | None, rows: slice, *, full: bool) -> tuple[Array, Array]:
+        """Return an area's weights, (rows, shapes), of its curves, (frames, controls), and the trust in its contacts."""
+        network = self.networks[area]
         with torch.inference_mode():
-            curves = torch.from_numpy(held.T.astype(np.float32))[None]
-            share = torch.zeros(1, 1, frames)
+            curves = _held(asked)
+            share = torch.zeros(1, 1, len(asked))
             if full:
-                curves, share = network.tempered(curves)
+                curves, share = network.tempered(curves, None if original is None else _held(original))
             said = network(curves, full=full, rows=rows)[0].numpy().T
         return said, share[0, :, rows].numpy().T
 
     def _areas(self, *, extended: bool) -> list[Area]:
         return [area for area in AREAS + EXTENDED_AREAS * extended if area.name in self.networks]
+
+
+def _held(curves: Array) -> Tensor:
+    """Return curves, (frames, n), as (1, n, frames), the last frame held up to a multiple of the networks' pooling."""
+    held = torch.from_numpy(curves.T.astype(np.float32))[None]
+    missing = -len(curves) % ALIGNMENT
+    return pad(held, (0, missing), mode="replicate") if missing else held
 
 
 def load(folder: Path = MODELS) -> Regressor:

@@ -11,11 +11,12 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import avg_pool1d, conv1d, elu, max_pool1d, pad
 
-LOOK = 8  # frames on either side that are scaled with an excess, and over which the scale comes and goes
+LOOK = 24  # frames on either side that are scaled with an excess, and over which the scale comes and goes
 UNET_REACH = 24  # frames: one feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 through its convolutions and up to 3 through pooling
 REACH = 2 * UNET_REACH + 2 * LOOK + 4  # two U-Nets on what looks 2 * LOOK around, and 4 for median and velocity
 ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
 BEYOND = 0.005  # share of recorded frames that the full system holds to be further out than a face goes
+ROOM = 0.3  # of the usual bound, by which an edit may go further than the take, wherever that is
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,7 @@ class UNetConfig:
     inputs: int
     outputs: int
     widths: tuple[int, int, int] = (32, 64, 128)
+    waves: int = 0  # random ones, by which the linear part bends (Rahimi and Recht 2007)
 
 
 def _block(inputs: int, outputs: int) -> nn.Sequential:
@@ -54,12 +56,17 @@ class UNet(nn.Module):
 
     mean: Tensor
     scale: Tensor
+    turns: Tensor
+    phases: Tensor
 
     def __init__(self, config: UNetConfig) -> None:
         super().__init__()
         narrow, middle, wide = config.widths
         self.config = config
-        self.linear = nn.Conv1d(config.inputs, config.outputs, 1)
+        self.linear = nn.Conv1d(config.inputs + config.waves, config.outputs, 1)
+        if config.waves:
+            self.register_buffer("turns", torch.randn(config.waves, config.inputs, 1) / math.sqrt(config.inputs))
+            self.register_buffer("phases", 2 * math.pi * torch.rand(config.waves))
         self.down1, self.down2 = _block(config.inputs, narrow), _block(narrow, middle)
         self.bottom = _block(middle, wide)
         self.up2, self.up1 = _block(wide + middle, middle), _block(middle + narrow, narrow)
@@ -81,8 +88,14 @@ class UNet(nn.Module):
         deep = _twice(max_pool1d(half, 2), bottom)  # (batch, wide, frames / 4)
         half = _twice(torch.cat([_grown(deep), half], dim=1), up2)
         fine = _twice(torch.cat([_grown(half), fine], dim=1), up1)
-        mapped: Tensor = self.linear(x) + self.last(fine)
+        mapped: Tensor = self.linear(self.bent(x)) + self.last(fine)
         return mapped
+
+    def bent(self, x: Tensor) -> Tensor:
+        """Return what the linear part sees of standardised inputs, (batch, inputs, frames): these and their waves."""
+        if not self.config.waves:
+            return x
+        return torch.cat([x, math.sqrt(2.0) * conv1d(x, self.turns, self.phases).cos()], dim=1)
 
 
 class AreaNetwork(nn.Module):
@@ -98,6 +111,7 @@ class AreaNetwork(nn.Module):
     centre: Tensor
     whiten: Tensor
     bound: Tensor
+    usual: Tensor
 
     def __init__(self, regressor: UNetConfig, autoencoder: UNetConfig) -> None:
         super().__init__()
@@ -107,6 +121,7 @@ class AreaNetwork(nn.Module):
         self.register_buffer("centre", torch.zeros(1, regressor.inputs, 1))
         self.register_buffer("whiten", torch.eye(2 * regressor.inputs))
         self.register_buffer("bound", torch.tensor(torch.inf))
+        self.register_buffer("usual", torch.tensor(torch.inf))
 
     def forward(self, controls: Tensor, *, full: bool = True, rows: slice | None = None) -> Tensor:
         """Return weights, (batch, shapes, frames), of controls, (batch, controls, frames) in mm.
@@ -124,29 +139,31 @@ class AreaNetwork(nn.Module):
         cleaned: Tensor = self.autoencoder(self.regressor(bounded)[..., _within(far, near)].clamp(0.0, 1.0))
         return cleaned[..., _within(near, rows)]
 
-    def tempered(self, controls: Tensor) -> tuple[Tensor, Tensor]:
-        """Return controls, (batch, controls, frames) in mm, scaled towards their mean where they outdo recorded ones.
+    def tempered(self, controls: Tensor, original: Tensor | None = None) -> tuple[Tensor, Tensor]:
+        """Return controls, (batch, controls, frames) in mm, drawn back to where faces go from where they outdo these.
 
-        Further out or faster than `bound`, in the metric of how recorded controls and their velocities vary together.
-        The motion around an excess is scaled as a whole and keeps its form; an excess too short to be motion, salt or
-        pepper, is scaled alone. Returned with the scale, (batch, 1, frames), 1 where nothing had to be done.
+        Further out or faster than `bound`, in the metric of how recorded controls and their velocities vary together,
+        they are drawn back towards the mean. Of an edit, the `original` take's curves are known: it may last as far out
+        as `usual`, and by `ROOM` further than the take is there, and is drawn back towards the take, which itself is
+        never tempered. The departure around an excess is scaled as a whole and keeps its form; an excess too short to
+        be motion, salt or pepper, is scaled alone. Returned with the scale, (batch, 1, frames), 1 where nothing had to
+        be done.
         """
-        away = controls - self.centre
-        lasting = pad(away, (2, 2), mode="replicate").unfold(2, 5, 1).median(dim=-1).values
-        share = -max_pool1d(-self._share(lasting), 2 * LOOK + 1, stride=1, padding=LOOK)
+        known, count = self.centre.expand_as(controls) if original is None else original, controls.shape[1]
+        away = controls - known
+        moving = self.whiten @ _with_velocity(torch.cat([_median(away), away, known - self.centre]))
+        lasting, moment, begun = moving.view(3, len(away), *moving.shape[1:])  # each (batch, 2 * controls, frames)
+        # The first rows of the triangular `whiten` are of positions alone.
+        rows, bound = (2 * count, self.bound) if original is None else (count, self.usual)
+        share = _share(lasting[:, :rows], begun[:, :rows], bound)
+        share = -max_pool1d(-share, 2 * LOOK + 1, stride=1, padding=LOOK)
         share = avg_pool1d(pad(share, (LOOK, LOOK), mode="replicate"), 2 * LOOK + 1, stride=1)
-        share = torch.minimum(share, self._share(away))
-        return self.centre + away * share, share
-
-    def _share(self, away: Tensor) -> Tensor:
-        """Return by how much to scale each frame, (batch, 1, frames), for it to be within the bound."""
-        distance = (self.whiten @ _with_velocity(away)).norm(dim=1, keepdim=True)
-        share: Tensor = (self.bound / distance.clamp(min=1e-6)).clamp(max=1.0)
-        return share
+        share = torch.minimum(share, _share(moment, begun, self.bound))
+        return known + away * share, share
 
     @torch.no_grad()
-    def learn_bounds(self, controls: Tensor) -> None:
-        """Take the bounds from recorded controls, (windows, controls, frames) in mm."""
+    def learn_bounds(self, controls: Tensor, unusual: float) -> None:
+        """Take the bounds from recorded controls, (windows, controls, frames) in mm, a share of them `unusual`."""
         self.low.copy_(controls.amin(dim=(0, 2))[None, :, None])
         self.high.copy_(controls.amax(dim=(0, 2))[None, :, None])
         self.centre.copy_(controls.mean(dim=(0, 2))[None, :, None])
@@ -155,8 +172,9 @@ class AreaNetwork(nn.Module):
         covariance += 0.01 * covariance.diagonal().diag()  # two lids are all but one control
         whiten = torch.linalg.inv(torch.linalg.cholesky(covariance))
         self.whiten.copy_(whiten)
-        distance = (moving @ whiten.T).norm(dim=1)
-        self.bound.copy_(distance.kthvalue(math.ceil((1 - BEYOND) * len(distance))).values)
+        white = moving @ whiten.T
+        for bound, rows, share in ((self.bound, white, BEYOND), (self.usual, white[:, : controls.shape[1]], unusual)):
+            bound.copy_(rows.norm(dim=1).kthvalue(math.ceil((1 - share) * len(rows))).values)
 
     def config(self) -> dict[str, Any]:
         """Return what rebuilds this module."""
@@ -178,6 +196,28 @@ def _with_velocity(curves: Tensor) -> Tensor:
     """Return curves, (batch, n, frames), and below them how they change over four frames."""
     held = pad(curves, (2, 2), mode="replicate")
     return torch.cat([curves, held[..., 4:] - held[..., :-4]], dim=1)
+
+
+def _share(along: Tensor, begun: Tensor, bound: Tensor) -> Tensor:
+    """Return the largest share, (batch, 1, frames), of each frame's departure that leaves it within a bound.
+
+    Solves ``|begun + share * along| = radius``, both (batch, rows, frames) in the whitened space, where within the bound
+    is within a ball.
+    """
+    out = begun.square().sum(dim=1, keepdim=True).sqrt()
+    radius = torch.maximum(bound, out + ROOM * bound)
+    across, square = (along * begun).sum(dim=1, keepdim=True), along.square().sum(dim=1, keepdim=True)
+    reach = (across.square() + square * (radius - out) * (radius + out)).sqrt() - across
+    return torch.where(square > reach, reach / square, 1.0)
+
+
+def _median(curves: Tensor) -> Tensor:
+    """Return the median of each five frames of curves, (batch, n, frames), by comparisons, which cost less than sorting."""
+    held = pad(curves, (2, 2), mode="replicate")
+    one, two, three, four, five = (held[..., shift : shift + curves.shape[2]] for shift in range(5))
+    low = torch.maximum(torch.minimum(one, two), torch.minimum(four, five))
+    high = torch.minimum(torch.maximum(one, two), torch.maximum(four, five))
+    return torch.maximum(torch.minimum(low, high), torch.minimum(torch.maximum(low, high), three))
 
 
 def from_config(config: dict[str, Any]) -> AreaNetwork:

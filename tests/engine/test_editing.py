@@ -50,8 +50,8 @@ def test_a_patch_equals_inference_over_the_whole_take(demo_take: Take, fps: floa
     wanted = dragger.controls.copy()
     wanted[start : start + 30] = asked
     at = np.arange(int(np.ceil((frames - 1) * 30 / fps)) + 1) * fps / 30
-    network = infer.bundled()
-    change = network.infer(interpolate(wanted, at)) - network.infer(interpolate(dragger.controls, at))
+    network, original = infer.bundled(), interpolate(dragger.controls, at)
+    change = network.infer(interpolate(wanted, at), original=original) - network.infer(original, original=original)
     whole = take.weights + interpolate(change, np.arange(frames) * 30 / fps)
     expected = np.clip(whole, np.minimum(take.weights, 0), np.maximum(take.weights, 1))
     np.testing.assert_allclose(
@@ -70,6 +70,30 @@ def test_exact_lands_on_the_asked_curve(demo_take: Take) -> None:
     start, asked = ask(dragger.controls, "lips_vertical", (60, 80), "set", 9.0)
     patch = dragger.drag(start, asked, exact_curve=True)
     np.testing.assert_allclose(patch.reached[60 - patch.start : 80 - patch.start, LIPS], 9.0, atol=0.05)
+
+
+def test_asking_for_more_than_anyone_did_brings_the_face_back_no_more(demo_take: Take) -> None:
+    dragger = Dragger(demo_take)
+    column = CONTROL_INDEX["lips_horizontal"]
+    narrow = [
+        dragger.drag(*ask(dragger.controls, "lips_horizontal", (60, 80), "add", by_mm)).reached[20:30, column]
+        for by_mm in (-15.0, -25.0, -40.0)
+    ]
+    np.testing.assert_allclose(narrow[1:], [narrow[0]] * 2, atol=0.1)
+    low, high = infer.bundled().limits
+    assert (low < high).all() and np.isfinite([low, high]).all()
+
+
+def test_what_a_take_does_itself_may_be_beyond_everyone(demo_take: Take) -> None:
+    """A take further out than any recording plays back, and an edit of it moves the face from where it is."""
+    wild = np.array(demo_take.weights)
+    wild[:, SHAPE_INDEX["jawOpen"]] = 1.0
+    wild[:, SHAPE_INDEX["mouthFunnel"]] = 1.0
+    dragger = Dragger(Take(weights=wild, fps=demo_take.fps))
+    assert (dragger.controls[:, LIPS] > infer.bundled().limits[1][LIPS]).any()
+    patch = dragger.drag(*ask(dragger.controls, "lips_vertical", (60, 80), "add", -6.0))
+    moved = patch.reached[60 - patch.start : 80 - patch.start, LIPS] - dragger.controls[60:80, LIPS]
+    assert (moved < -2.0).all()
 
 
 def test_contacts_take_hold_without_a_pop(demo_take: Take) -> None:

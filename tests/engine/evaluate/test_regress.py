@@ -12,7 +12,7 @@ from engine.evaluate import regress
 from engine.performance import demo
 from engine.performance.corpus import synthetic_performances
 from engine.regress.areas import AREAS
-from engine.take import SHAPES
+from engine.take import SHAPES, Array
 
 
 @pytest.fixture
@@ -48,6 +48,27 @@ def test_any_folder_of_takes_can_be_measured(tmp_path: Path) -> None:
     assert {"regressor", "full", "hsk16", "ridge"} <= {row["method"] for row in rows}
     for row in rows:
         assert 0 <= row["mse_lower"] < 0.1 and 0 <= row["closure_tpr_mouth"] <= 1
+
+
+def test_figures_are_drawn(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    shutil.copy(demo.BUNDLED, tmp_path / "someone.csv")
+    drawn = regress.figures(tmp_path, tmp_path, lambda line: None)
+    assert len(drawn) == 3 and all(path.stat().st_size > 10_000 for path in drawn)
+
+
+def test_the_full_system_is_told_what_was_recorded_and_never_what_was_meant(piece: Piece) -> None:
+    from engine.evaluate.regress_edits import REQUESTS, requested
+
+    known = []
+
+    def method(controls: Array, take: regress.Known) -> Array:
+        known.append(take.controls)
+        return np.asarray(piece.weights)
+
+    asked, _ = requested(method, REQUESTS["x3"], piece)
+    np.testing.assert_array_equal(known[0], measure(piece.weights))
+    assert np.abs(asked - known[0]).max() > 1.0
 
 
 def test_requests_that_fit_no_face_differ_from_what_was_measured(piece: Piece) -> None:

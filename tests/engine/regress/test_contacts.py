@@ -40,6 +40,15 @@ def test_a_face_far_from_what_is_asked_was_mended_on_purpose() -> None:
     np.testing.assert_array_equal(met(apart, asked, WHOLLY), apart)
 
 
+def test_a_wink_of_the_take_itself_is_no_mistake() -> None:
+    face = np.zeros((1, len(SHAPES)))
+    wink = np.array(face)
+    wink[:, SHAPE_INDEX["eyeBlinkLeft"]] = 0.9
+    asked = measure(wink)
+    np.testing.assert_array_equal(met(face, asked, WHOLLY), face)
+    np.testing.assert_allclose(measure(met(face, asked, WHOLLY, asked))[:, MEETING], asked[:, MEETING], atol=0.3)
+
+
 def test_a_request_that_had_to_be_tempered_is_not_met_to_the_letter(weights: Array) -> None:
     asked = measure(weights) + 0.5
     np.testing.assert_array_equal(met(weights, asked, 0.3 * WHOLLY), weights)

@@ -22,7 +22,7 @@ def regressor() -> Regressor:
         for unet in (network.regressor, network.autoencoder):
             torch.nn.init.normal_(unet.last.weight, std=0.3)
         network.regressor.scale.fill_(20.0)
-        network.learn_bounds(torch.rand(8, inputs, 64) * 30)
+        network.learn_bounds(torch.rand(8, inputs, 64) * 30, 0.05)
         networks[area.name] = network
     return Regressor(networks)
 
@@ -32,9 +32,12 @@ def regressor() -> Regressor:
 @pytest.mark.parametrize(("start", "stop"), [(0, 5), (100, 101), (97, 160), (233, 251), (0, 251)])
 def test_a_range_equals_the_whole_take(regressor: Regressor, start: int, stop: int, full: bool, controls: int) -> None:
     curves = np.random.default_rng(1).uniform(0, 50, (251, controls))
-    whole = regressor.infer(curves, full=full)[start:stop]
-    np.testing.assert_allclose(regressor.infer_range(curves, start, stop, full=full), whole, atol=1e-5)
-    assert np.ptp(whole) > 0.01
+    original = np.random.default_rng(2).uniform(0, 50, curves.shape)
+    for known in (None, original):
+        whole = regressor.infer(curves, full=full, original=known)[start:stop]
+        made = regressor.infer_range(curves, start, stop, full=full, original=known)
+        np.testing.assert_allclose(made, whole, atol=1e-5)
+        assert np.ptp(whole) > 0.01
 
 
 def test_remembered_answers_stand_for_those_of_the_networks(

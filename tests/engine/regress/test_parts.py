@@ -45,7 +45,7 @@ def test_a_face_that_exists_is_its_own_nearest() -> None:
 
 def _tempered(controls: torch.Tensor) -> AreaNetwork:
     network = AreaNetwork(UNetConfig(3, 2, (4, 4, 4)), UNetConfig(2, 2, (4, 4, 4)))
-    network.learn_bounds(controls)
+    network.learn_bounds(controls, 0.05)
     return network
 
 
@@ -84,6 +84,31 @@ def test_pepper_is_scaled_alone() -> None:
     assert (made[..., 60] - network.centre[..., 0]).abs().max() < 3.0
     torch.testing.assert_close(made[..., :50], quiet[..., :50])
     torch.testing.assert_close(made[..., 70:], quiet[..., 70:])
+
+
+def test_what_a_take_does_itself_is_never_tempered() -> None:
+    controls = torch.randn(20, 3, 256, generator=torch.Generator().manual_seed(0)).cumsum(dim=2) * 0.1
+    network = _tempered(controls)
+    wild = 5.0 * controls[:1]
+    made, scale = network.tempered(wild, wild)
+    torch.testing.assert_close(made, wild, rtol=0, atol=0)
+    assert (scale == 1).all() and network.tempered(wild)[1].min() < 0.5
+
+
+def test_dragging_further_never_brings_the_face_back_and_moves_it_from_anywhere() -> None:
+    rng = torch.Generator().manual_seed(0)
+    network = _tempered(torch.randn(20, 3, 256, generator=rng).cumsum(dim=2) * 0.1)
+    for begun in (0.2, 1.0, 6.0):  # well within what was recorded, and far beyond it
+        original = begun * torch.randn(1, 3, 1, generator=rng).expand(1, 3, 64)
+        ways = torch.randn(8, 3, 1, generator=rng)
+        reached = []
+        for amount in torch.linspace(0.0, 30.0, 61):
+            made, _ = network.tempered(original + amount * ways, original.expand(8, 3, 64))
+            reached.append(((made - original) / ways).mean(dim=1))
+            torch.testing.assert_close(made, original + reached[-1][:, None] * ways)  # no other control moves
+        steps = torch.stack(reached).diff(dim=0)
+        assert steps.min() > -1e-4
+        assert steps[0].min() > 0.1
 
 
 def test_salt_and_pepper_throws_the_share_it_is_asked_to() -> None:
