@@ -6,7 +6,7 @@ import pytest
 from engine.corpus import Piece, rest_of
 from engine.inpaint.fill import fill, fill_spans
 from engine.inpaint.gap import gap_of, ground, statistics_of
-from engine.inpaint.infer import bundled
+from engine.inpaint.infer import AT_REST, _above_rest, bundled
 from engine.inpaint.lend import DRAW_IN, costs, lent, trust
 from engine.inpaint.request import Request
 from engine.inpaint.seams import distance_frames, room_frames
@@ -125,3 +125,10 @@ def test_spans_still_to_be_made_lend_nothing() -> None:
     spans = [(100, 180), (250, 300)]
     first = [fill_spans(Take(w, 30.0), spans, Request((0, 0))).weights[100:180] for w in (weights, spoilt)]
     np.testing.assert_array_equal(*first)
+
+
+def test_what_is_pulled_below_nought_ends_softly_above_it() -> None:
+    pulled = np.linspace(-1, 1, 201)[:, None]
+    soft = _above_rest(pulled)
+    assert (soft > 0).all() and (np.diff(soft, axis=0) > 0).all()
+    assert np.abs(soft - np.maximum(pulled, 0)).max() <= AT_REST / 2
