@@ -22,11 +22,32 @@ def show(title: str, rows: Sequence[dict[str, Any]], *, as_json: bool) -> None:
     if as_json:
         print(json.dumps({"table": title, "rows": rows}))
         return
+    console = Console()
+    for columns in _fitting(rows, console.width):
+        shown = Table(title=title)
+        for name in columns:
+            shown.add_column(name, overflow="fold")
+        for row in rows:
+            shown.add_row(*(_cell(row.get(name)) for name in columns))
+        console.print(shown)
+
+
+def _fitting(rows: Sequence[dict[str, Any]], width: int) -> list[list[str]]:
+    """Share the columns out to tables that are no wider than a terminal, each with the words that name its rows."""
     columns = list(dict.fromkeys(name for row in rows for name in row))
-    shown = Table(*columns, title=title)
-    for row in rows:
-        shown.add_row(*(_cell(row.get(name)) for name in columns))
-    Console().print(shown)
+    wide = {name: 3 + max(len(name), *(len(_cell(row.get(name))) for row in rows)) for name in columns}
+    names = [name for name in columns if any(isinstance(row.get(name), str) for row in rows)]
+    tables, room = [list(names)], width - 1 - sum(wide[name] for name in names)
+    left = room
+    for name in columns:
+        if name in names:
+            continue
+        if wide[name] > left and len(tables[-1]) > len(names):
+            tables.append(list(names))
+            left = room
+        tables[-1].append(name)
+        left -= wide[name]
+    return tables
 
 
 def _cell(value: Any) -> str:
