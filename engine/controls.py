@@ -41,6 +41,8 @@ CONTROLS: tuple[Control, ...] = (
     Control("nose_to_lip", "nose to lip", "nose_bridge", "lip_upper", "lower"),
     Control("chin_to_lip", "chin to lip", "chin", "lip_lower", "lower"),
 )
+# BSS20 section 5.2: mouth opening, corners and one eyelid are the fewest that tell of mouth and lids.
+FEW = ("lips_vertical", "lips_horizontal", "eyelid_left")
 CONTROL_INDEX: dict[str, int] = {control.name: index for index, control in enumerate(CONTROLS)}
 
 

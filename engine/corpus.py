@@ -12,7 +12,7 @@ import numpy as np
 from engine.errors import EngineError
 from engine.formats import facegood, livelink
 from engine.models.resample import to_model_rate
-from engine.take import Array, Mask, Take, runs
+from engine.take import MODEL_FPS, Array, Mask, Take, runs
 
 TEST = ("alex_rom_4", "facial", "1114_3_16")
 VALIDATION_SHARE = 0.15  # the last part of each training take
@@ -113,3 +113,11 @@ def rest_of(pieces: Iterable[Piece], piece: Piece, start: int, stop: int) -> lis
 def whole_faces(pieces: Iterable[Piece]) -> list[Piece]:
     """Return the pieces that animate more than mouth and jaw."""
     return [piece for piece in pieces if piece.whole_face]
+
+
+def recorded_seconds(pieces: Iterable[Piece]) -> dict[str, float]:
+    """Return how much pieces hold of each take, by its name, as a network's card says it."""
+    frames: dict[str, int] = {}
+    for piece in pieces:
+        frames[piece.source] = frames.get(piece.source, 0) + len(piece.weights)
+    return {source: round(count / MODEL_FPS, 1) for source, count in frames.items()}

@@ -15,11 +15,11 @@ from torch import Tensor
 from engine.clean.batches import Batch, Settings, make_batch, training_pieces
 from engine.clean.network import CleanConfig, CleanNetwork, State, config_of, run
 from engine.clean.tuning import train_rivals
-from engine.corpus import Piece, split
+from engine.corpus import Piece, recorded_seconds, split
 from engine.errors import EngineError
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
 from engine.models.distances import Distances, six_distances
-from engine.take import MODEL_FPS, Array
+from engine.take import Array
 
 Report = Callable[[str], None]
 MM_PER_CM = 10.0  # distances count in cm, so that they weigh like weights
@@ -173,12 +173,9 @@ def _train_rivals(data: Path, out: Path, report: Report) -> None:
 
 
 def _card(training: list[Piece], settings: Settings, metrics: dict[str, float]) -> Card:
-    seconds: dict[str, float] = {}
-    for piece in training:
-        seconds[piece.source] = round(seconds.get(piece.source, 0.0) + len(piece.weights) / MODEL_FPS, 1)
     return Card(
         kind="clean",
-        data={"recorded_seconds": seconds, "synthetic_minutes": settings.synthetic_minutes},
+        data={"recorded_seconds": recorded_seconds(training), "synthetic_minutes": settings.synthetic_minutes},
         split="train; best state by the last 15 % of each training take; test takes never seen",
         seed=settings.seed,
         commit=commit(),

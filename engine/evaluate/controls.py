@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.controls import CONTROL_INDEX, bundled_measurer
+from engine.controls import CONTROL_INDEX, FEW, bundled_measurer
 from engine.corpus import Piece
 from engine.evaluate import regressors
 from engine.evaluate.baselines import bsbs19, hsk16
@@ -20,7 +20,7 @@ from engine.take import MODEL_FPS, SHAPES, Array
 
 Row = dict[str, Any]
 Method = Callable[[Array], Array]
-SETS = {"8": tuple(CONTROL_INDEX), "3": regressors.THREE}
+SETS = {"8": tuple(CONTROL_INDEX), "3": FEW}
 _STRETCH = 200  # frames whose spectra are compared, as long as the network's training windows
 _SEEN = np.array(["Look" not in name for name in SHAPES])  # no control tells where the eyes look
 

@@ -14,7 +14,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import mse_loss
 
-from engine.controls import CONTROL_INDEX, bundled_measurer
+from engine.controls import CONTROL_INDEX, FEW, bundled_measurer
 from engine.corpus import split
 from engine.inpaint.material import Help, Performance, draw, performances
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
@@ -22,7 +22,6 @@ from engine.models.unet import ALIGNMENT, UNet
 from engine.take import SHAPES, Array
 
 FRAMES, BATCH, STEPS, SEED = 64, 64, 1500, 0
-THREE = ("lips_vertical", "lips_horizontal", "eyelid_left")  # BSS20 section 5.2: mouth opening, corners, one eyelid
 
 
 class HSK16(nn.Module):
@@ -108,9 +107,9 @@ def load(name: str) -> Regressor:
     prefix = f"{name}."
     own = {key.removeprefix(prefix): value for key, value in tensors.items() if key.startswith(prefix)}
     mean, scale = (own.pop(key).numpy().astype(np.float64) for key in ("mean", "scale"))
-    network = KINDS[name](len(THREE))
+    network = KINDS[name](len(FEW))
     network.load_state_dict(own)
-    return Regressor(network.eval(), THREE, mean, scale)
+    return Regressor(network.eval(), FEW, mean, scale)
 
 
 def train(data: Path, out: Path = MODELS, report: Callable[[str], None] = print) -> dict[str, float]:
@@ -121,7 +120,7 @@ def train(data: Path, out: Path = MODELS, report: Callable[[str], None] = print)
     tensors: dict[str, Tensor] = {}
     figures: dict[str, float] = {}
     for name in KINDS:
-        regressor = _fitted(name, THREE, material)
+        regressor = _fitted(name, FEW, material)
         state = regressor.network.state_dict() | {
             "mean": torch.tensor(regressor.mean),
             "scale": torch.tensor(regressor.scale),

@@ -11,7 +11,7 @@ import numpy as np
 import torch
 from torch.nn.functional import mse_loss
 
-from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer
+from engine.controls import CONTROL_INDEX, CONTROLS, FEW, bundled_measurer
 from engine.corpus import Piece, split, whole_faces
 from engine.inpaint.expected import MEMBERS, Expected
 from engine.inpaint.material import Help, Performance, draw, performances
@@ -20,7 +20,6 @@ from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card
 from engine.models.threads import one_thread
 from engine.take import SHAPES, Array, Mask
 
-FEW = ("lips_vertical", "lips_horizontal", "eyelid_left")  # BSS20 section 5.2: the fewest that tell of mouth and lids
 PARTIAL = "expected.partial.safetensors"
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from engine.corpus import Piece, split
+from engine.corpus import Piece, recorded_seconds, split
 from engine.inpaint.gap import Statistics, ground, statistics_of
 from engine.inpaint.infer import Filler, save_filler
 from engine.inpaint.lend import LENDERS
@@ -22,7 +22,6 @@ from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, no
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
 from engine.models.distances import six_distances
 from engine.models.threads import one_thread
-from engine.take import MODEL_FPS
 
 Report = Callable[[str], None]
 SHARED = "inpaint_shared.partial.safetensors"  # where both ways part
@@ -259,12 +258,9 @@ def _run(trainer: Trainer, out: Path, name: str, report: Report) -> float:
 
 
 def _card(name: str, training: Sequence[Piece], settings: Settings, metrics: dict[str, Any], seconds: float) -> Card:
-    recorded: dict[str, float] = {}
-    for piece in training:
-        recorded[piece.source] = round(recorded.get(piece.source, 0.0) + len(piece.weights) / MODEL_FPS, 1)
     return Card(
         kind="inpaint",
-        data={"recorded_seconds": recorded, "synthetic_minutes": settings.help.synthetic_minutes},
+        data={"recorded_seconds": recorded_seconds(training), "synthetic_minutes": settings.help.synthetic_minutes},
         split="train; figures on the last 15 % of each training take; test takes never seen",
         seed=settings.seed,
         commit=commit(),

@@ -20,7 +20,7 @@ import torch
 from torch import Tensor
 
 from engine.controls import CONTROLS, bundled_measurer
-from engine.corpus import Piece, split, whole_faces
+from engine.corpus import Piece, recorded_seconds, split, whole_faces
 from engine.extended import bundled_extended
 from engine.models.checkpoint import MODELS, Card, commit, save_card, save_model
 from engine.models.distances import Distances
@@ -31,7 +31,7 @@ from engine.regress.data import NearestFaces, Source, Windows, cut, source
 from engine.regress.losses import distance_error
 from engine.regress.network import AreaNetwork, UNet, UNetConfig
 from engine.regress.requests import contradictory, exaggerated, salt_and_pepper
-from engine.take import MODEL_FPS, SHAPES, Array
+from engine.take import SHAPES, Array
 
 Report = Callable[[str], None]
 STAGES = ("regressor", "autoencoder")
@@ -322,12 +322,9 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
 
 
 def _card(training: Sequence[Piece], settings: Settings, metrics: dict[str, float]) -> Card:
-    seconds: dict[str, float] = {}
-    for piece in training:
-        seconds[piece.source] = round(seconds.get(piece.source, 0.0) + len(piece.weights) / MODEL_FPS, 1)
     return Card(
         kind="regress",
-        data={"recorded_seconds": seconds},
+        data={"recorded_seconds": recorded_seconds(training)},
         split="train; watched on the last 15 % of each training take; test takes never seen",
         seed=settings.seed,
         commit=commit(),

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.controls import CONTROL_INDEX, bundled_measurer
+from engine.controls import CONTROL_INDEX, FEW, bundled_measurer
 from engine.inpaint.fill import fill
 from engine.performance.corpus import synthetic_performances
 from engine.speed import Speed, percentile_ms
 from engine.take import MODEL_FPS, Take
 
 FRAMES, GOAL_MS = 200, 40.0
-FEW = ("lips_vertical", "lips_horizontal", "eyelid_left")
 
 
 def measure() -> list[Speed]:
