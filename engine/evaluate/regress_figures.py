@@ -17,6 +17,7 @@ from engine.take import MODEL_FPS, Array
 SHOWN = 240  # frames, 8 s
 COLOURS = {  # Okabe and Ito, the same method in the same colour everywhere
     "full": "#0072B2",
+    "full_of_curves": "#000000",  # without knowing the take, as the methods of others are
     "regressor": "#E69F00",
     "hsk16": "#D55E00",
     "ridge": "#009E73",
@@ -83,7 +84,7 @@ def _curves(pieces: list[Piece], known: dict[str, Method], folder: Path) -> Path
 
 def _closure_rates(pieces: list[Piece], known: dict[str, Method], folder: Path) -> Path:
     figure, axes = _axes(2, 2, (9, 6))
-    for name in (name for name in COLOURS if name in known):  # the rest are ours without a part of it
+    for name in (name for name in COLOURS if name in known):  # the other is ours without contacts
         found = measured_closures([played(known[name], piece) for piece in pieces], pieces)
         for column, (part, closures) in enumerate(found.items()):
             for row, (rates, title) in enumerate(((closures.tpr, "kept"), (closures.fpr, "invented"))):
