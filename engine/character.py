@@ -21,6 +21,7 @@ BUNDLED = Path(__file__).parent.parent / "assets" / "head" / "head.npz"
 REQUIRED = ("vertices", "faces", "shape_names", "deltas", "colours", "landmark_names", "landmark_vertices")
 FARTHEST_MM = 1e6
 MAX_NAME = 80  # letters shown on screen
+MAX_NAMES = 10_000  # of shapes, of landmarks
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 
 
@@ -94,6 +95,8 @@ def load(path: Path = BUNDLED) -> Character:
 
 
 def _stored(arrays: Mapping[str, npt.NDArray[Any]]) -> Character:
+    if max(arrays["shape_names"].size, arrays["landmark_names"].size) > MAX_NAMES:
+        raise ValueError("more names than a head has")
     vertices = arrays["vertices"].astype(np.float32, casting="same_kind")
     deltas = np.zeros((len(SHAPES), *vertices.shape), np.float32)
     for name, delta in zip(arrays["shape_names"], arrays["deltas"], strict=True):

@@ -1,4 +1,4 @@
-"""Characters from other programs: glTF with morph targets, a folder of OBJ files, ICT-FaceKit; and our own file."""
+"""Characters from other programs: glTF and VRM with morph targets, a folder of OBJ files, ICT-FaceKit; and our own file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from engine.errors import FormatError
 from engine.formats.characters.raw import RawCharacter
 from engine.formats.content import require_file
 
-KNOWN = "Retake imports glTF and GLB, folders of OBJ files, and ICT-FaceKit."
+KNOWN = "Retake imports glTF, GLB and VRM, folders of OBJ files, and ICT-FaceKit."
 
 
 def read(path: Path) -> RawCharacter:
@@ -22,7 +22,7 @@ def read(path: Path) -> RawCharacter:
         raise FormatError(f"{path.name[:80]} is not there.", KNOWN)
     require_file(path)
     ending = path.suffix.lower()
-    if ending in (".gltf", ".glb"):
+    if ending in (".gltf", ".glb", ".vrm"):
         return gltf.read(path)
     if ending == ".obj":
         return obj.read_mesh(path)

@@ -26,6 +26,7 @@ class RawCharacter:
     triangles : (t, 3) int32
     shapes : the file's name of each shape -> (n, 3) float32 deltas
     notices : sentences about the import that the user should see
+    unit, up : what the format prescribes, a key of `frame.UNITS_MM` and a name of `frame.UPS`; empty where it does not
     """
 
     name: str
@@ -33,6 +34,8 @@ class RawCharacter:
     triangles: npt.NDArray[np.int32]
     shapes: dict[str, npt.NDArray[np.float32]]
     notices: tuple[str, ...] = ()
+    unit: str = ""
+    up: str = ""
 
 
 def check(raw: RawCharacter) -> RawCharacter:
