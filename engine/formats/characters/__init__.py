@@ -13,7 +13,13 @@ KNOWN = "Retake imports glTF, GLB and VRM, folders of OBJ files, and ICT-FaceKit
 
 
 def read(path: Path) -> RawCharacter:
-    """Read a character's mesh and shapes from any supported file or folder; raises `FormatError`."""
+    """Read a character's mesh and shapes from any supported file or folder, its vertices welded; raises `FormatError`."""
+    from engine.formats.characters.weld import welded
+
+    return welded(_read(path))
+
+
+def _read(path: Path) -> RawCharacter:
     from engine.formats.characters import gltf, ict, obj
 
     if os.path.isdir(path):  # which raises for no name, as pathlib does
