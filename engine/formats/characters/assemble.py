@@ -52,6 +52,7 @@ def assemble(
     frame: Frame | None = None,
     matches: Sequence[Match] | None = None,
     landmarks: Mapping[str, int] | None = None,
+    found: Detection | None = None,
 ) -> Import:
     """Make a character of a file's mesh; what is not given is detected.
 
@@ -61,6 +62,7 @@ def assemble(
     frame : unit and axes of the file
     matches : what each of its shapes is taken for
     landmarks : vertices that were placed by hand, by name and in the file's numbers
+    found : what `frame.detect` said of the same
 
     Raises
     ------
@@ -68,7 +70,7 @@ def assemble(
     EditError : for a landmark that no head has
     """
     rows = list(matches) if matches is not None else match_names(raw.shapes)
-    found = detect(raw, rows)
+    found = found or detect(raw, rows)
     frame = frame or found.frame
     neutral = raw.vertices @ frame.matrix
     used = [row for row in rows if row.sure]

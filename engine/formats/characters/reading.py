@@ -67,6 +67,6 @@ def assembled(raw: RawCharacter, reading: Reading, landmarks: Mapping[str, int] 
     if turn is not None and not abs(turn) <= 360:
         raise EditError("A face is turned by -360 to 360 degrees.")
     matches = corrected(match_names(raw.shapes), reading.names)
-    found = detect(raw, matches, unit=reading.unit, up=reading.up).frame
-    frame = found if turn is None else Frame(found.unit, found.up, float(np.round(turn, 6)))
-    return assemble(raw, frame=frame, matches=matches, landmarks=landmarks)
+    found = detect(raw, matches, unit=reading.unit, up=reading.up)
+    frame = found.frame if turn is None else Frame(found.frame.unit, found.frame.up, float(np.round(turn, 6)))
+    return assemble(raw, frame=frame, matches=matches, landmarks=landmarks, found=found)

@@ -53,9 +53,9 @@ def _motion_keys(raw: RawCharacter, tolerance: float) -> Array:
     keys = np.zeros((len(raw.vertices), 2))
     rng = np.random.default_rng(0)
     for delta in raw.shapes.values():
-        rounded = np.round(delta / np.float32(tolerance)).astype(np.float64)
-        for axis in range(3):
-            keys += rounded[:, axis, None] * rng.integers(1, 1 << 20, size=2)
+        moving = np.flatnonzero(delta.any(axis=1))
+        rounded = np.round(delta[moving] / np.float32(tolerance)).astype(np.float64)
+        keys[moving] += rounded @ rng.integers(1, 1 << 20, size=(3, 2)).astype(np.float64)  # whole numbers: exact
     return keys
 
 
