@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
@@ -15,13 +15,14 @@ import numpy.typing as npt
 from engine.errors import AssetError, EditError, EngineError
 from engine.formats.archive import arrays_of
 from engine.formats.atomic import write_bytes
-from engine.take import SHAPE_INDEX, SHAPES, Array
+from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
 BUNDLED = Path(__file__).parent.parent / "assets" / "head" / "head.npz"
 SPLIT = ("split", "split_triangles")
 REQUIRED = ("vertices", "faces", "shape_names", "deltas", "colours", "landmark_names", "landmark_vertices")
 FARTHEST_MM = 1e6
 MAX_NAME = 80  # letters shown on screen
+UNTOLD = 0.02  # a weight below this is not worth a word
 MAX_NAMES = 10_000  # of shapes, of landmarks
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 
@@ -72,6 +73,11 @@ class Character:
         posed[self._moving] += (used @ self._basis).reshape(-1, 3)
         return posed
 
+    @cached_property
+    def lacking(self) -> tuple[str, ...]:
+        """Names of the shapes that the head has not."""
+        return tuple(name for name, delta in zip(SHAPES, self.deltas, strict=True) if not delta.any())
+
     @property
     def triangles_in_file(self) -> npt.NDArray[np.int32]:
         """The triangles of the file's own vertices, (t, 3)."""
@@ -109,6 +115,19 @@ def drawable(weights: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     used = np.clip(weights, 0.0, 1.0)
     used[_CLOSE] = min(used[_CLOSE], used[_JAW])
     return used
+
+
+def without_lacking(take: Take, character: Character) -> Take:
+    """Return a take without what a head cannot do: weights of shapes it has not are 0, and what is lost so is said."""
+    lacking = [SHAPE_INDEX[name] for name in character.lacking]
+    lost = [SHAPES[column] for column in lacking if (take.weights[:, column] > UNTOLD).any()]
+    if not take.weights[:, lacking].any():
+        return take
+    weights = take.weights.copy()
+    weights[:, lacking] = 0.0
+    shown = ", ".join(lost[:4]) + (f" and {len(lost) - 4} more" if len(lost) > 4 else "")
+    said = (f"{character.name} has no {shown}: what the source does there is not in the new take.",) if lost else ()
+    return replace(take, weights=weights, notices=(*take.notices, *said))
 
 
 def load(path: Path = BUNDLED) -> Character:

@@ -74,7 +74,11 @@ def each_once(names: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
             name = f"{name} {number}"
         seen.add(name)
         found.append(name)
-    said = f"{len(doubled)} markers have a name that another has too, such as {doubled[0][:40]}: numbered." if doubled else ""
+    said = (
+        f"{len(doubled)} markers have a name that another has too, such as {doubled[0][:40]}: numbered."
+        if doubled
+        else ""
+    )
     return tuple(found), (said,) if said else ()
 
 

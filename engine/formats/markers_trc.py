@@ -39,7 +39,14 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     if scale is None:
         raise FormatError(f"{path.name} is in the unit {settings['units'][:20]!r}.", "Retake reads mm, cm and m.")
     rows = _number(settings, "numframes", path)
-    notices = doubled if rows == len(body) else (*doubled, f"The file says it has {rows:g} frames but holds {len(body)}.",)
+    notices = (
+        doubled
+        if rows == len(body)
+        else (
+            *doubled,
+            f"The file says it has {rows:g} frames but holds {len(body)}.",
+        )
+    )
     return Markers(positions * scale, names, fps or _number(settings, "datarate", path), path.name, notices)
 
 

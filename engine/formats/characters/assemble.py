@@ -21,6 +21,7 @@ from engine.take import SHAPE_INDEX, SHAPES, Array
 OTHER_VALUES = 4  # coordinates beside the shapes, of each vertex
 SMALLEST_MM, LARGEST_MM = 20.0, 5000.0  # height of a head alone, of a giant's body
 
+
 @dataclass(frozen=True, eq=False)
 class Import:
     """A character read from a file, with everything that was guessed on the way.
@@ -118,9 +119,13 @@ def _unseen(raw: RawCharacter, frame: Frame, found: Detection) -> FormatError:
 def _notices(frame: Frame, rows: Sequence[Match], raw: RawCharacter, found: Detection) -> list[str]:
     sentences = [f"Read in {frame.unit}, {frame.up} up, facing {frame.facing}."]
     if found.exchanged:
-        sentences.append("Its left shapes lie on its right: the file may be mirrored, or name sides as a viewer sees them.")
+        sentences.append(
+            "Its left shapes lie on its right: the file may be mirrored, or name sides as a viewer sees them."
+        )
     if len(raw.split):
-        sentences.append(f"{len(raw.split):,} vertices of the file are {len(raw.vertices):,} places; seams were closed.")
+        sentences.append(
+            f"{len(raw.split):,} vertices of the file are {len(raw.vertices):,} places; seams were closed."
+        )
     missing = [shape for shape in SHAPES if not any(row.sure and row.shape == shape for row in rows)]
     if not raw.shapes:
         sentences.append("The mesh has no shapes: it can be driven from points, not from weights.")
@@ -129,9 +134,7 @@ def _notices(frame: Frame, rows: Sequence[Match], raw: RawCharacter, found: Dete
         sentences.append(f"{len(missing)} of {len(SHAPES)} shapes were not found: {shown}.")
     doubtful = [row.source for row in rows if row.shape and not row.sure]
     if doubtful:
-        sentences.append(
-            f"{len(doubtful)} names are like a shape but not alike enough to be taken: {_few(doubtful)}."
-        )
+        sentences.append(f"{len(doubtful)} names are like a shape but not alike enough to be taken: {_few(doubtful)}.")
     guessed = [f"{row.source} for {row.shape}" for row in rows if row.sure and not row.certain]
     if guessed:
         sentences.append(f"Taken by likeness: {_few(guessed)}.")

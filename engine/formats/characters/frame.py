@@ -8,6 +8,7 @@ from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.character import bundled
 from engine.formats.characters.eyes import eyeballs
@@ -55,7 +56,7 @@ class Frame:
         ahead = axis("-y") if self.up[-1] == "z" else axis("z")
         angle = np.radians(self.facing_deg)
         front = np.cos(angle) * ahead + np.sin(angle) * np.cross(up, ahead)
-        return np.round(np.stack([np.cross(up, front), up, front]), 12) + 0.0
+        return np.asarray(np.round(np.stack([np.cross(up, front), up, front]), 12) + 0.0)
 
     @property
     def matrix(self) -> Array:
@@ -68,13 +69,15 @@ class Frame:
         front = self.axes[2]
         if self.facing_deg % 45:
             return f"{self.facing_deg:.0f}° to its left"
-        named = [f"{'-' if value < 0 else '+'}{name}" for name, value in zip("xyz", front, strict=True) if abs(value) > 0.1]
+        named = [
+            f"{'-' if value < 0 else '+'}{name}" for name, value in zip("xyz", front, strict=True) if abs(value) > 0.1
+        ]
         return "".join(named).removeprefix("+")
 
 
 def axis(name: str) -> Array:
     """Return the unit vector of an axis such as -z."""
-    return np.eye(3)["xyz".index(name[-1])] * (-1.0 if name.startswith("-") else 1.0)
+    return np.asarray(np.eye(3)["xyz".index(name[-1])] * (-1.0 if name.startswith("-") else 1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +96,7 @@ class Motion:
     extent: float
 
 
-def motions_of(vertices: Array, deltas: Mapping[str, Array]) -> dict[str, Motion]:
+def motions_of(vertices: Array, deltas: Mapping[str, npt.NDArray[np.float32]]) -> dict[str, Motion]:
     """Return the motion of each shape that moves anything, by name."""
     found = {}
     for name, delta in deltas.items():

@@ -80,10 +80,10 @@ def _spent(left: Budget, group: list[Structure], placed: Placed, accessors: Acce
     if shapes > MAX_SHAPES:
         raise FormatError(f"{path.name} has {shapes} shapes: more than can be held.")
     beside = VERTEX_VALUES if placed.bones is None else BONE_VALUES
-    corners = sum(
-        accessors.count(part["indices"]) if part.get("indices") is not None else vertices for part in group
+    corners = sum(accessors.count(part["indices"]) if part.get("indices") is not None else vertices for part in group)
+    return left.spend(
+        path.name, nodes=NODES_PER_SHAPE * (1 + shapes), values=vertices * (beside + 3 * shapes) + 2 * corners
     )
-    return left.spend(path.name, nodes=NODES_PER_SHAPE * (1 + shapes), values=vertices * (beside + 3 * shapes) + 2 * corners)
 
 
 def _piece(mesh: Structure, group: list[Structure], placed: Placed, accessors: Accessors, path: Path) -> _Piece:
@@ -142,11 +142,15 @@ def _joined(pieces: list[_Piece], path: Path) -> RawCharacter:
     starts = np.concatenate([[0], np.cumsum([len(piece.vertices) for piece in pieces])])
     shapes = {}
     for name in names:
-        parts = [piece.targets.pop(name, None) for piece in pieces]  # given up one by one: both would be twice the memory
+        parts = [
+            piece.targets.pop(name, None) for piece in pieces
+        ]  # given up one by one: both would be twice the memory
         shapes[name] = parts[0] if len(parts) == 1 else _whole(parts, starts)
     triangles = [piece.triangles + np.int32(start) for start, piece in zip(starts, pieces, strict=False)]
     vertices = np.concatenate([piece.vertices for piece in pieces])
-    raw = RawCharacter(path.stem, vertices, np.concatenate(triangles), {n: d for n, d in shapes.items() if d is not None})
+    raw = RawCharacter(
+        path.stem, vertices, np.concatenate(triangles), {n: d for n, d in shapes.items() if d is not None}
+    )
     return replace(raw, unit=UNIT, up=UP)
 
 

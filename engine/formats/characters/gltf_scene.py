@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.formats.characters.accessors import Accessors, Structure
@@ -46,7 +47,7 @@ def placed_meshes(scene: Structure, accessors: Accessors, path: Path) -> Iterato
         if nodes[index].get("skin") is None:
             yield Placed(mesh, matrix)
         else:
-            yield _skinned(mesh, nodes[index]["skin"], scene, matrices, accessors, path)
+            yield _skinned(mesh, nodes[index]["skin"], scene, matrices=matrices, accessors=accessors, path=path)
 
 
 def _world(nodes: list[Structure], path: Path) -> dict[int, Array]:
@@ -86,7 +87,7 @@ def _matrix(node: Structure) -> Array:
 
 
 def _skinned(
-    mesh: int, skin: Any, scene: Structure, matrices: dict[int, Array], accessors: Accessors, path: Path
+    mesh: int, skin: Any, scene: Structure, *, matrices: dict[int, Array], accessors: Accessors, path: Path
 ) -> Placed:
     """Return a mesh that bones hold: each takes it from the mesh to the bone by its inverse bind matrix, and to the scene."""
     skins = scene.get("skins") or []
@@ -109,7 +110,7 @@ def _skinned(
     return Placed(mesh, bones[0], None if alike else bones)
 
 
-def blended(bones: Array, joints: Array, shares: Array) -> Array:
+def blended(bones: Array, joints: npt.NDArray[np.int64], shares: Array) -> Array:
     """Return each vertex's matrix, (n, 4, 4), of bones (j, 4, 4) held by joints (n, 4) with shares (n, 4) each."""
     total = np.maximum(shares.sum(axis=1, keepdims=True), 1e-12)
     return np.asarray(np.einsum("nk,nkij->nij", shares / total, bones[joints]))

@@ -161,9 +161,7 @@ def _centre_of_motion(vertices: Array, delta: npt.NDArray[np.float32]) -> Array 
     return np.asarray(share @ vertices / share.sum())
 
 
-def skin_of(
-    triangles: npt.NDArray[np.int32], neutral: Array, deltas: npt.NDArray[np.float32]
-) -> npt.NDArray[np.bool_]:
+def skin_of(triangles: npt.NDArray[np.int32], neutral: Array, deltas: npt.NDArray[np.float32]) -> npt.NDArray[np.bool_]:
     """Return which vertices, (n,), belong to the part of which most moves, or to the largest part where nothing does.
 
     A body and its clothes have more vertices than a face.

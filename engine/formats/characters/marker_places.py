@@ -8,16 +8,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial.distance import cdist
 
 from engine.character import Character, bundled
 from engine.errors import EditError
-from engine.formats.characters.placing import FEWEST, place_rest
+from engine.formats.characters.placing import place_rest
 from engine.manifold.pose import fit_similarity
 from engine.spacetime.layout import MARKERS, standard
-from engine.take import Array
+from engine.take import Array, Mask
 
+Indices = npt.NDArray[np.int64]
 FEWEST_BY_PLACE = 8  # markers whose places alone tell a face
 ROUNDS, REFINED = 12, 8  # of pairing and fitting: alike in all directions, then stretched
 STRETCH = (0.75, 1.33)  # of one axis against the others: faces differ so much and no more
@@ -92,7 +94,9 @@ class MarkerTable:
             if marker not in known:
                 raise EditError(f"The capture has no marker called {marker[:40]!r}.")
             if landmark and landmark not in MARKERS:
-                raise EditError(f"There is no marker place called {landmark[:40]!r}.", f"There are: {', '.join(MARKERS)}.")
+                raise EditError(
+                    f"There is no marker place called {landmark[:40]!r}.", f"There are: {', '.join(MARKERS)}."
+                )
         rows = [
             replace(row, landmark=changes[row.marker], away_mm=0.0, how="by hand" if changes[row.marker] else "left out")
             if row.marker in changes
@@ -118,23 +122,22 @@ def match_markers(points: Array, names: Sequence[str]) -> MarkerTable:
     EditError : where the names tell too little and the places are no face's
     """
     by_name = _by_name(names)
-    seen = np.isfinite(points).all(axis=1)
+    seen: Mask = np.asarray(np.isfinite(points).all(axis=1))
     rest = standard(bundled()).rest(bundled())
-    known = [index for index, landmark in by_name.items() if seen[index]]
-    if len(known) >= min(FEWEST_BY_PLACE, len(names)) or len(known) == len(names):
+    known = [index for index in by_name if seen[index]]
+    if len(known) >= FEWEST_BY_PLACE:
         goals = rest[[MARKERS.index(by_name[index]) for index in known]]
-        turn = fit_similarity(points[known], goals[None], mirrored=False).turn[0] if len(known) >= FEWEST else np.eye(3)
-        if len(known) >= FEWEST_BY_PLACE:  # a few of them tell the head's pose less well than the file's own axes
-            return _table(names, by_name, {}, turn)
+        return _table(names, by_name, {}, fit_similarity(points[known], goals[None], mirrored=False).turn[0])
+    if len(by_name) == len(names):  # too few to tell the head's axes better than the file does
         return _table(names, by_name, {}, np.eye(3))
-    rows = np.flatnonzero(seen)
+    rows: Indices = np.flatnonzero(seen)
     if len(rows) < FEWEST_BY_PLACE:
         raise EditError(
             f"Only {len(known)} of the {len(names)} markers are called like a landmark, too few to find the others.",
             "Name a landmark file that says which vertex carries which marker.",
         )
     apart = float(np.linalg.norm(rest[MARKERS.index("lid_upper_left")] - rest[MARKERS.index("lid_upper_right")]))
-    alien, meant = _alien([names[row] for row in rows])
+    alien, meant = _alien([names[int(row)] for row in rows])
     laid, turn, away = _laid(points[rows], rest, ALIEN * apart * alien)
     reach = np.where(meant, NEAR_NAMED, NEAR)
     if away > LIKE_A_FACE * apart:
@@ -142,7 +145,7 @@ def match_markers(points: Array, names: Sequence[str]) -> MarkerTable:
             "The markers do not lie on a face as its landmarks do.",
             "Choose a frame in which the face is at rest, or name a landmark file for them.",
         )
-    return _table(names, by_name, _assigned(laid, rest, rows, by_name, reach * apart, alien), turn)
+    return _table(names, by_name, _assigned(laid, rest, rows, by_name, near=reach * apart, alien=alien), turn)
 
 
 def _by_name(names: Sequence[str]) -> dict[int, str]:
@@ -173,7 +176,7 @@ def _table(
     return MarkerTable(tuple(rows), turn)
 
 
-def _alien(names: Sequence[str]) -> tuple[Array, Array]:
+def _alien(names: Sequence[str]) -> tuple[Array, Mask]:
     """Return 1 for each landmark that a marker's name speaks against, (n, landmarks), and whether it speaks, (n,)."""
     result = np.zeros((len(names), len(MARKERS)))
     for row, name in enumerate(names):
@@ -184,14 +187,14 @@ def _alien(names: Sequence[str]) -> tuple[Array, Array]:
         meant = tuple(part for word in words for part in AREAS[word])
         if meant:
             result[row] = [not landmark.startswith(meant) for landmark in MARKERS]
-    return result, result.any(axis=1)
+    return result, np.asarray(result.any(axis=1))
 
 
 def _laid(points: Array, rest: Array, alien: Array) -> tuple[Array, Array, float]:
     """Return markers, (n, 3), laid onto a face's, the rotation that it took, and how far they are away, mm."""
     spread = [float(np.sqrt(((cloud - cloud.mean(axis=0)) ** 2).sum(axis=1).mean())) for cloud in (points, rest)]
     scaled = (points - points.mean(axis=0)) * spread[1] / max(spread[0], 1e-300)
-    tried = []
+    tried: list[tuple[float, int, Array, Array]] = []
     for start in _directions():
         _, turn = _fitted(scaled, scaled @ start + rest.mean(axis=0), rest)
         laid = _stretched(scaled @ turn, rest, alien)
@@ -204,12 +207,12 @@ def _laid(points: Array, rest: Array, alien: Array) -> tuple[Array, Array, float
     return laid, turn, _apart(laid, rest, alien)
 
 
-def _partners(laid: Array, rest: Array, alien: Array) -> tuple[Array, Array]:
+def _partners(laid: Array, rest: Array, alien: Array) -> tuple[Indices, Indices]:
     """Return numbers of markers and landmarks that the assignment of least distance pairs, the closest of them."""
     gaps = cdist(laid, rest) + alien
     ours, theirs = linear_sum_assignment(gaps)
     close = gaps[ours, theirs] <= np.quantile(gaps[ours, theirs], CLOSEST)
-    return ours[close], theirs[close]
+    return np.asarray(ours[close], np.int64), np.asarray(theirs[close], np.int64)
 
 
 def _directions() -> list[Array]:
@@ -235,7 +238,7 @@ def _fitted(points: Array, laid: Array, rest: Array) -> tuple[Array, Array]:
     return laid, turn
 
 
-def _pairs(laid: Array, rest: Array) -> tuple[Array, Array]:
+def _pairs(laid: Array, rest: Array) -> tuple[Indices, Indices]:
     """Return numbers of markers and of landmarks next to each other, those of the closest pairs, each way."""
     gaps = cdist(laid, rest)
     there, back = gaps.argmin(axis=1), gaps.argmin(axis=0)
@@ -243,7 +246,7 @@ def _pairs(laid: Array, rest: Array) -> tuple[Array, Array]:
     theirs = np.concatenate([there, np.arange(len(rest))])
     away = gaps[ours, theirs]
     close = away <= np.quantile(away, CLOSEST)
-    return ours[close], theirs[close]
+    return np.asarray(ours[close], np.int64), np.asarray(theirs[close], np.int64)
 
 
 def _apart(laid: Array, rest: Array, alien: Array) -> float:
@@ -274,7 +277,7 @@ def _even(size: Array) -> Array:
 
 
 def _assigned(
-    laid: Array, rest: Array, rows: Array, by_name: Mapping[int, str], near: Array, alien: Array
+    laid: Array, rest: Array, rows: Indices, by_name: Mapping[int, str], *, near: Array, alien: Array
 ) -> dict[int, tuple[str, float]]:
     """Return landmark and distance, within `near`, (n,) mm, for each marker that lies on one, by its number."""
     gaps = cdist(laid, rest)

@@ -11,7 +11,11 @@ from dataclasses import dataclass, replace
 from engine.errors import EditError
 from engine.take import SHAPES
 
-EXACT, RESPELT, OTHER_NAME = 1.0, 0.99, 0.95  # likeness of ARKit's own name, of another spelling, of another word for it
+EXACT, RESPELT, OTHER_NAME = (
+    1.0,
+    0.99,
+    0.95,
+)  # likeness of ARKit's own name, of another spelling, of another word for it
 SURE = 0.8  # likeness from which a guess is taken without asking
 WORTH_SHOWING = 0.6
 LONGEST = 64  # letters; comparing takes time that grows with their square

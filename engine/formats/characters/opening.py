@@ -16,7 +16,7 @@ def is_own(path: Path) -> bool:
     return path.suffix.lower() == ".npz" and os.path.isfile(path) and not ict.is_ict(path)
 
 
-def character_of(path: Path, reading: Reading = Reading()) -> Character:
+def character_of(path: Path, reading: Reading | None = None) -> Character:
     """Return the head in a file of ours or, as corrected, of another program; raises `EngineError` with one sentence."""
     if path.suffix.lower() == ".npz":
         try:
@@ -24,4 +24,4 @@ def character_of(path: Path, reading: Reading = Reading()) -> Character:
         except AssetError:  # another program's archive is tried next
             if is_own(path):
                 raise
-    return import_head(path, reading).character
+    return import_head(path, reading or Reading()).character

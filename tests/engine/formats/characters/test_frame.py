@@ -109,7 +109,9 @@ def test_one_shape_alone_tells_a_quarter_turn() -> None:
 
 def test_sides_that_are_exchanged_do_not_turn_the_face_away_and_are_said() -> None:
     raw = own()
-    swapped = {name.replace("Left", "#").replace("Right", "Left").replace("#", "Right"): d for name, d in raw.shapes.items()}
+    swapped = {
+        name.replace("Left", "#").replace("Right", "Left").replace("#", "Right"): d for name, d in raw.shapes.items()
+    }
     made = assemble(replace(raw, shapes=swapped))
     assert made.frame == Frame("mm", "y")
     assert any("left shapes lie on its right" in notice for notice in made.notices)

@@ -152,9 +152,7 @@ def _with_skin(scene: dict[str, Any], binary: bytes, second_bone: list[float]) -
         binary += values.tobytes()
         scene["bufferViews"].append({"buffer": 0, "byteOffset": start, "byteLength": values.nbytes})
         view = len(scene["bufferViews"]) - 1
-        scene["accessors"].append(
-            {"bufferView": view, "componentType": component, "count": len(values), "type": kind}
-        )
+        scene["accessors"].append({"bufferView": view, "componentType": component, "count": len(values), "type": kind})
     first = len(scene["accessors"]) - 3
     scene["buffers"][0]["byteLength"] = len(binary)
     scene["meshes"][0]["primitives"][0]["attributes"] |= {"JOINTS_0": first + 1, "WEIGHTS_0": first + 2}

@@ -29,7 +29,10 @@ def flat(raw: RawCharacter, triangles: np.ndarray | None = None) -> RawCharacter
     corners = (raw.triangles if triangles is None else triangles).ravel()
     shapes = {name: delta[corners] for name, delta in raw.shapes.items()}
     return replace(
-        raw, vertices=raw.vertices[corners], triangles=np.arange(len(corners), dtype=np.int32).reshape(-1, 3), shapes=shapes
+        raw,
+        vertices=raw.vertices[corners],
+        triangles=np.arange(len(corners), dtype=np.int32).reshape(-1, 3),
+        shapes=shapes,
     )
 
 
@@ -75,7 +78,7 @@ def test_lips_that_touch_stay_two_where_they_move_apart_or_are_no_rim() -> None:
     assert welded(replace(both, shapes={"jawOpen": apart})).vertices.shape == (8, 3)
     fan = np.array([[4, 0, 1], [4, 1, 2], [4, 2, 3], [4, 3, 0]], np.int32)  # closed about its middle
     domes = np.concatenate([square, [[0.5, 0.5, 0.5]]])
-    turned = np.concatenate([square + [0, 0, 1], [[0.5, 0.5, 0.5]]])
+    turned = np.concatenate([square + np.array([0, 0, 1]), [[0.5, 0.5, 0.5]]])
     touching = RawCharacter("domes", np.concatenate([domes, turned]), np.concatenate([fan, fan + 5]), {})
     assert welded(touching) is touching
 
@@ -108,7 +111,9 @@ def test_a_map_that_leads_nowhere_is_refused(split: np.ndarray, tmp_path: Path) 
 
 def test_colouring_many_parts_costs_memory_by_vertex_not_by_part() -> None:
     raw = flat(own())
-    landmarks = {name: int(np.flatnonzero(bundled().triangles.ravel() == v)[0]) for name, v in bundled().landmarks.items()}
+    landmarks = {
+        name: int(np.flatnonzero(bundled().triangles.ravel() == v)[0]) for name, v in bundled().landmarks.items()
+    }
     tracemalloc.start()
     colours_of(raw.vertices, raw.triangles, landmarks)
     _, peak = tracemalloc.get_traced_memory()
