@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QSignalBlocker, Qt
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
 
 from app.retarget.retargeting import Retargeting
@@ -124,8 +125,15 @@ class HeadSection(Section):
         self._retargeting.read_anew(names={**names, name: "" if text == LEFT_OUT else text})
 
 
+class _Box(QComboBox):
+    """A box that the wheel scrolls past: it stands in a list, and a choice by accident reads the head anew."""
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        event.ignore()
+
+
 def _box(name: str, texts: Sequence[str]) -> QComboBox:
-    box = QComboBox()
+    box = _Box()
     box.addItems(list(texts))
     box.setAccessibleName(name)
     box.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
