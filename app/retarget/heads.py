@@ -63,7 +63,6 @@ class HeadSection(Section):
         self.table.verticalHeader().setDefaultSectionSize(ROW_PX)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
-        self.table.setFixedHeight(TABLE_PX)
         self.column.addWidget(self.table)
         self.all_shapes = QCheckBox("List all shapes")
         self.all_shapes.setToolTip(
@@ -81,7 +80,8 @@ class HeadSection(Section):
         state = self._retargeting
         made, refused = state.target.imported, state.refused
         reading = refused[1] if refused else state.target.reading
-        self.setEnabled(made is not None or refused is not None)
+        self.needed = made is not None or refused is not None
+        self.setVisible(self.needed and self.session.tool in self.tools)
         for part in (self._frame, self.table, self.all_shapes):
             part.setVisible(made is not None or (refused is not None and part is self._frame))
         for box, value in ((self.unit, reading.unit), (self.up, reading.up), (self.facing, _turn(reading.facing_deg))):
@@ -95,7 +95,6 @@ class HeadSection(Section):
             self.all_shapes.hide()
             return
         if made is None:
-            self._facts.setText("Choose a head of another program; what was found in it is listed here.")
             return
         rows = made.matches if self.all_shapes.isChecked() else reviewed(made.matches)
         counts = f"{sum(row.sure for row in made.matches)} of {len(made.matches)} shapes taken."
@@ -109,6 +108,7 @@ class HeadSection(Section):
         self._listed = tuple(rows)
         self.boxes = {}
         self.table.setRowCount(len(rows))
+        self.table.setFixedHeight(min(TABLE_PX, ROW_PX * (len(rows) + 1) + 6))
         for number, row in enumerate(rows):
             item = QTableWidgetItem(row.source)
             item.setToolTip(row.how)

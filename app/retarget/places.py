@@ -99,6 +99,7 @@ class PlacesSection(Section):
                 state = _state(name, target, taken.get(name))
                 item = self.list.item(row)
                 item.setText(f"{row + 1}  {name}" + (f"  · {state}" if state else ""))
+                item.setToolTip(item.text())  # the panel is narrow, and studios' names are long
                 item.setForeground(QColor("#E69F00") if state == "not placed" else self.palette().text().color())
             chosen = self._placing.chosen
             self.list.setCurrentRow(names.index(chosen) if chosen in names else -1)

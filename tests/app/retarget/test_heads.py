@@ -79,7 +79,7 @@ def test_a_head_that_would_not_be_seen_is_told_and_can_be_read_in_another_unit(
     assert "would hardly be seen" in told.args[0] and "cm would fit" in told.args[1]
     section = retarget.heads
     assert retarget.retargeting.target.head is None and section.unit.isVisible()
-    pick(section.unit, "cm")
+    QTest.keyClick(section.unit, Qt.Key.Key_C)
     qtbot.waitUntil(lambda: retarget.retargeting.target.path == path, timeout=30_000)
     head = retarget.retargeting.target.head
     assert head is not None and 200 < np.ptp(head.neutral[:, 1]) < 400
