@@ -6,16 +6,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.character import Character, bundled
 from engine.errors import EditError, FormatError
 from engine.formats.budget import BUDGET
-from engine.formats.characters.colouring import colours_of
+from engine.formats.characters.colouring import MOST_PARTS, colours_of
 from engine.formats.characters.frame import TYPICAL_MM, UNITS_MM, Detection, Frame, detect
 from engine.formats.characters.landmarks import transfer_landmarks
 from engine.formats.characters.names import Match, match_names
 from engine.formats.characters.raw import RawCharacter
 from engine.framing import LEAST_SHARE, share_seen
+from engine.manifold.drive import parts_of
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
 OTHER_VALUES = 4  # coordinates beside the shapes, of each vertex
@@ -87,7 +89,7 @@ def assemble(
         neutral.astype(np.float32),
         raw.triangles,
         deltas,
-        colours_of(neutral, raw.triangles, places),
+        _colours(neutral, raw, places),
         places,
         raw.name,
         split=raw.split,
@@ -96,6 +98,17 @@ def assemble(
     if share_seen(character) < LEAST_SHARE:
         raise _unseen(raw, frame, found)
     return Import(character, frame, rows, away, (*raw.notices, *_notices(frame, rows, raw, found)))
+
+
+def _colours(neutral: Array, raw: RawCharacter, places: Mapping[str, int]) -> npt.NDArray[np.uint8]:
+    """Return colours, (n, 3), told by the parts that the file has; by those that welding made where it split every face."""
+    if not len(raw.split) or parts_of(raw.split_triangles, len(raw.split)).max() >= MOST_PARTS:
+        return colours_of(neutral, raw.triangles, places)
+    _, first = np.unique(raw.split, return_index=True)
+    of_file = colours_of(
+        neutral[raw.split], raw.split_triangles, {name: int(first[vertex]) for name, vertex in places.items()}
+    )
+    return np.asarray(of_file[first])
 
 
 def _require_size(neutral: Array, raw: RawCharacter, frame: Frame, found: Detection) -> None:

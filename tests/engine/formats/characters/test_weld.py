@@ -119,3 +119,24 @@ def test_colouring_many_parts_costs_memory_by_vertex_not_by_part() -> None:
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 1_000 * len(raw.vertices)  # a mask for each of 21,000 parts took 21,000 bytes for each vertex
+
+
+def test_eyes_that_touch_other_parts_at_their_rims_keep_their_colours() -> None:
+    raw, smooth = own(), assemble(own()).character
+    parts = parts_of(raw.triangles, len(raw.vertices))
+    eye = np.flatnonzero(parts == parts[np.argmax((smooth.colours == smooth.colours.min(axis=0)).all(axis=1))])
+    rim = eye[np.argmin(raw.vertices[eye, 2])]
+    other = np.array([raw.vertices[rim], raw.vertices[rim] + [0, 0, -5], raw.vertices[rim] + [0, -5, -5]])
+    shapes = {
+        name: np.concatenate([delta, np.repeat(delta[rim, None], 3, axis=0)]) for name, delta in raw.shapes.items()
+    }
+    more = np.arange(3, dtype=np.int32)[None] + len(raw.vertices)
+    touching = replace(
+        raw,
+        vertices=np.concatenate([raw.vertices, other]),
+        triangles=np.concatenate([raw.triangles, more]),
+        shapes=shapes,
+    )
+    made = assemble(welded(touching))
+    assert len(made.character.split)
+    np.testing.assert_array_equal(made.character.colours[made.character.split[eye]], smooth.colours[eye])
