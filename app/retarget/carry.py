@@ -217,9 +217,11 @@ def with_markers(target: Target, capture: Source, table: MarkerTable) -> Target:
         return made
     given = {name: target.places[name] for name in capture.names if name in target.by_hand and name in target.places}
     try:
-        return replace(made, places=places_on(target.head, capture.neutral, capture.names, table, given))
+        found = places_on(target.head, capture.neutral, capture.names, table, given)
     except EditError:
         return made  # the head lacks landmarks: they are placed by hand
+    others = {name: vertex for name, vertex in target.places.items() if name not in capture.names}  # for a take again
+    return replace(made, places={**others, **found})
 
 
 def with_place(target: Target, name: str, vertex: int | None) -> Target:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -27,6 +26,7 @@ from app.retarget.carry import (
     with_markers,
 )
 from app.retarget.commands import TargetCommand
+from app.retarget.kept import KeptHeads
 from app.session import Change, Session
 from app.session.commands import EditCommand
 from engine.character import Character, bundled
@@ -98,7 +98,7 @@ class Retargeting(QObject):
         self._short.failed.connect(self._short_refused)
         self.progress.connect(self._advance)
         self._offered: Character | None = None
-        self._heads: dict[tuple[str, str], Character | None] = {_key({}): None}  # the bundled one has no path
+        self._kept_heads = KeptHeads(session, self.submit, self._follow)
         self.refused: tuple[Path, Reading] | None = None
         self._opening_head: tuple[Path | None, Reading] | None = None
         session.changed.connect(self._on_change)
@@ -211,7 +211,7 @@ class Retargeting(QObject):
         touched = target.head is not self._offered or target.labels or target.by_hand or self.result is not None
         if target.head is None or not touched:
             self._offered = offer.head
-            self._put(offer)
+            self._put(offer if self.capture is None else with_markers(offer, self.capture, target.markers))
 
     def _open(
         self,
@@ -354,7 +354,7 @@ class Retargeting(QObject):
 
         def then(patch: Patch) -> None:
             if session.take is take:
-                self._heads[_key(inputs)] = None if head is bundled() else head
+                self._kept_heads.know(inputs, None if head is bundled() else head)
                 session.undo.push(EditCommand(session, patch, f"carry to {head.name}", kind=KIND, inputs=inputs))
 
         self.submit(work, then)
@@ -394,18 +394,7 @@ class Retargeting(QObject):
             return  # a project is being opened; it says so when it is
         contents = session.contents()
         kept = [edit for edit in contents.edits[: contents.position] if edit.kind == KIND]
-        inputs = kept[-1].inputs if kept else {}
-        key = _key(inputs)
-        if key not in self._heads:
-            self._heads[key] = None  # where it cannot be read, once is enough
-            path, reading = Path(key[0]), Reading.restored(inputs.get("reading"))
-            self.submit(lambda: opened(path, reading), lambda target: self._found(key, target))
-        elif self._heads[key] is not session.character:
-            session.play_on(self._heads[key])
-
-    def _found(self, key: tuple[str, str], target: Target) -> None:
-        self._heads[key] = target.head
-        self._follow()
+        self._kept_heads.follow(kept[-1].inputs if kept else {})
 
     def _deliver(self, errand: Errand, result: Any) -> None:
         errand.then(result)
@@ -437,12 +426,6 @@ class Retargeting(QObject):
         elif change & Change.TOOL:
             self.ask_live()
             self.changed.emit()
-
-
-def _key(inputs: Mapping[str, Any]) -> tuple[str, str]:
-    """Return what tells one head of a kept retarget from another: its file, and how that was read."""
-    reading = Reading.restored(inputs.get("reading")).stored()
-    return str(inputs.get("target", "")), json.dumps(reading, sort_keys=True)
 
 
 def _run(errand: Errand) -> Any:
