@@ -122,12 +122,14 @@ def _write(found: Review, out: Path, *, pictures: bool) -> None:
     from engine.formats.atomic import write_bytes
     from engine.review.report import html
 
-    write_bytes(out, [html(found, draw=_drawing(found.comparison) if pictures else None).encode()])
+    draw, full_mm = _drawing(found.comparison) if pictures else (None, 0.0)
+    write_bytes(out, [html(found, draw=draw, full_mm=full_mm).encode()])
 
 
-def _drawing(compared: Comparison) -> Draw:
-    """Return what draws a change: before, after and their difference at its peak."""
+def _drawing(compared: Comparison) -> tuple[Draw, float]:
+    """Return what draws a change (before, after and their difference at its peak), and the mm it draws brightest."""
     from app.preview import movie
+    from app.preview.renderer import HEAT_FULL_MM
 
     shown = sorted(compared.changes, key=lambda change: -change.moved_mm)[:PICTURES]
 
@@ -138,7 +140,7 @@ def _drawing(compared: Comparison) -> Draw:
             compared.weights[change.peak], compared.after.weights[change.peak], height=PICTURE_HEIGHT
         )
 
-    return draw
+    return draw, HEAT_FULL_MM
 
 
 def _summary(found: Review) -> str:

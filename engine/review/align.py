@@ -67,22 +67,25 @@ class Alignment:
 def align(before: Take, after: Take, *, offset_s: float | None = None) -> Alignment:
     """Return where `after` lies on the clock of `before`.
 
-    An offset that is given wins. Else takes that begin together and move alike are aligned at their starts or by their
-    timecodes; else the lag with the highest normalised correlation of all 52 curves is taken.
+    An offset that is given wins, then timecodes under which both move alike. Else the lag with the highest normalised
+    correlation of all 52 curves is taken, unless both have one length and rate and move alike from the start, as edits do.
 
     Raises `EditError` where an offset leaves no common frame.
     """
     if offset_s is not None:
         _require_overlap(before, after, offset_s)
         return Alignment(offset_s, "offset", _correlation_at(before, after, offset_s))
-    stamped = before.start_s > 0 and after.start_s > 0
-    by: By = "timecode" if stamped else "start"
-    told = after.start_s - before.start_s if stamped else 0.0
-    if _overlap_s(before, after, told) >= _needed_s(before, after):
-        correlation = _correlation_at(before, after, told)
-        if correlation >= Tuning.alike:
-            return Alignment(told, by, correlation)
+    if before.start_s > 0 and after.start_s > 0:
+        told = after.start_s - before.start_s
+        if _overlap_s(before, after, told) >= _needed_s(before, after):
+            correlation = _correlation_at(before, after, told)
+            if correlation >= Tuning.alike:
+                return Alignment(told, "timecode", correlation)
+    together = _correlation_at(before, after, 0.0)
     lag, correlation = _best_lag(before, after)
+    same_clock = before.fps == after.fps and len(before) == len(after)
+    if together >= Tuning.alike and (same_clock or together >= correlation):
+        return Alignment(0.0, "start", together)
     return Alignment(lag, "correlation", correlation)
 
 

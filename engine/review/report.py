@@ -21,6 +21,15 @@ CHART_POINTS = 1200  # of a curve drawn in the report; more cannot be told apart
 CHART_WIDTH, CHART_HEIGHT = 960, 64  # px
 FLAGS_SHOWN = 200  # the heaviest; a table of thousands is read by nobody
 
+REGION_TITLES = {
+    "face": "Whole face",
+    "lower": "Mouth and jaw",
+    "upper": "Eyes and brows",
+    "eyes": "Eyes",
+    "left": "Left side",
+    "right": "Right side",
+}
+
 Draw = Callable[[Change], bytes]  # a PNG of before, after and their difference
 
 
@@ -107,8 +116,9 @@ class _Row:
     picture: str = field(default="")
 
 
-def html(review: Review, *, draw: Draw | None = None, at: datetime | None = None) -> str:
-    """Return the report as one HTML text; `draw` makes a picture of each change, and may be slow.
+def html(review: Review, *, draw: Draw | None = None, full_mm: float = 0.0, at: datetime | None = None) -> str:
+    """Return the report as one HTML text; `draw` makes a picture of each change, and may be slow;
+    `full_mm` is the motion that its difference shows brightest.
 
     All text of files, notes and names is escaped: it is shown, never interpreted.
     """
@@ -131,6 +141,8 @@ def html(review: Review, *, draw: Draw | None = None, at: datetime | None = None
             flags=sorted(heaviest, key=lambda flag: flag.start),
             hidden=len(review.flags_after) - len(heaviest),
             kinds=KINDS,
+            regions=REGION_TITLES,
+            full_mm=f"{full_mm:g}",
             clock=lambda frame: clock(frame, compared.after.fps),
             width=CHART_WIDTH,
             height=CHART_HEIGHT,
@@ -170,7 +182,7 @@ def _row(number: int, change: Change, after: Take, picture: str) -> _Row:
     return _Row(
         number,
         clock(change.start, after.fps),
-        f"{change.start} to {change.stop - 1}",
+        f"frame {change.start}" if change.stop - change.start == 1 else f"frames {change.start} to {change.stop - 1}",
         (change.stop - change.start) / after.fps,
         change,
         picture,
