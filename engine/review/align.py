@@ -82,7 +82,8 @@ def align(before: Take, after: Take, *, offset_s: float | None = None) -> Alignm
             if correlation >= Tuning.alike:
                 return Alignment(told, "timecode", correlation)
     together = _correlation_at(before, after, 0.0)
-    lag, correlation = _best_lag(before, after)
+    lag = _best_lag(before, after)
+    correlation = _correlation_at(before, after, lag)
     same_clock = before.fps == after.fps and len(before) == len(after)
     if together >= Tuning.alike and (same_clock or together >= correlation):
         return Alignment(0.0, "start", together)
@@ -134,8 +135,8 @@ def _correlation_at(before: Take, after: Take, offset_s: float) -> float:
     return float((a * b).sum() / power) if power > 1e-9 else float(np.allclose(a, b))
 
 
-def _best_lag(before: Take, after: Take) -> tuple[float, float]:
-    """Return the offset in seconds with the highest correlation over a long enough overlap, and that correlation.
+def _best_lag(before: Take, after: Take) -> float:
+    """Return the offset in seconds with the highest correlation over a long enough overlap.
 
     ``r(l) = sum_t a(t + l) b(t) / sqrt(sum_t a(t + l)^2 sum_t b(t)^2)`` over the frames both have at lag l, with each
     curve's mean over its whole take removed.
@@ -152,5 +153,4 @@ def _best_lag(before: Take, after: Take) -> tuple[float, float]:
     power = np.sqrt((energy_a[last] - energy_a[first]) * (energy_b[last - lags] - energy_b[first - lags]))
     long_enough = (last - first) >= _needed_s(before, after) * MODEL_FPS - 1
     score = np.where(long_enough & (power > 1e-9), product / np.maximum(power, 1e-9), -1.0)
-    best = int(np.argmax(score))
-    return float(lags[best] / MODEL_FPS), float(score[best])
+    return float(lags[np.argmax(score)] / MODEL_FPS)
