@@ -26,6 +26,7 @@ from engine.speech.lane import VisemeLane
 
 if TYPE_CHECKING:
     from engine.editing import Patch
+    from engine.project import Before
     from engine.take import Array
 
 
@@ -53,12 +54,14 @@ class EditCommand(QUndoCommand):
     ) -> None:
         super().__init__(title)
         self._marks = (session.marks, marks) if marks is not None else None
+        patch = patch.settled(session.take)
         rows = slice(patch.start, patch.stop)
         self._session, self._start = session, patch.start
-        self._before = (session.take.weights[rows].copy(), session.controls[rows].copy(), session.asked[rows].copy())
+        found = (session.take.weights, session.controls, session.asked, session.take.lost)
+        self._before = tuple(array[rows].copy() for array in found)
         asked = np.where(patch.asked != self._before[1], patch.asked, self._before[2])
-        self._after = (patch.weights, patch.reached, asked)
-        self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {})
+        self._after = (patch.weights, patch.reached, asked, patch.lost)
+        self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {}, patch.lost)
 
     @property
     def asked(self) -> tuple[int, Array] | None:
@@ -74,15 +77,16 @@ class EditCommand(QUndoCommand):
         return self._before[1], self._before[2]
 
     @classmethod
-    def restored(cls, session: Session, edit: Edit, before: tuple[Array, Array]) -> EditCommand:
-        """Return the command of a stored edit, which replaced `before`: (n, 52) weights and (n, 8) asked values."""
+    def restored(cls, session: Session, edit: Edit, before: Before) -> EditCommand:
+        """Return the command of a stored edit, which replaced `before`: (n, 52) weights, (n, 8) asked values, lost frames."""
         command = cls.__new__(cls)
         QUndoCommand.__init__(command, edit.title)
         measure = bundled_measurer().measure
         command._session, command._start, command.edit = session, edit.start, edit
         command._marks = None
-        command._before = (before[0], measure(before[0]), before[1])
-        command._after = (edit.weights, measure(edit.weights), edit.asked)
+        weights, asked, lost = before
+        command._before = (weights, measure(weights), asked, lost)
+        command._after = (edit.weights, measure(edit.weights), edit.asked, edit.still_lost(weights, lost))
         return command
 
     def redo(self) -> None:

@@ -18,7 +18,7 @@ from engine.controls import CONTROLS, bundled_measurer
 from engine.formats.audio import Audio
 from engine.project import Contents, Marks, Replayed, Span
 from engine.speech.lane import VisemeLane
-from engine.take import Array, Take, runs
+from engine.take import Array, Mask, Take, runs
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -54,7 +54,7 @@ class Session(QObject):
 
     Attributes
     ----------
-    take : as edited so far
+    take : as edited so far; its lost frames are those that nothing has given motion yet
     original : as opened
     controls : (frames, 8) mm, measured on `take`
     original_controls : (frames, 8) mm, measured on `original`
@@ -237,12 +237,12 @@ class Session(QObject):
             return float(drafted[frame - draft.start])
         return float(self.curve(lane)[frame])
 
-    def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array) -> None:
-        """Put rows of weights, controls and asked values in place; for commands only."""
+    def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array, lost: Mask) -> None:
+        """Put rows of weights, controls, asked values and lost frames in place; for commands only."""
         if self._restoring:
             return  # what the steps come to is known
         stop = start + len(weights)
-        self.take = self.take.with_rows(start, weights)
+        self.take = self.take.with_exact_rows(start, weights, lost)
         self.controls = _with_rows(self.controls, start, controls)
         self.asked = _with_rows(self.asked, start, asked)
         self.draft = None

@@ -34,7 +34,7 @@ class Fill:
 
     Attributes
     ----------
-    take : the take with the span filled; everything outside it is as it was, bit for bit
+    take : the take with the span filled and not lost any more; known frames outside it are as they were, bit for bit
     span : half-open range of frames that was filled
     seed : which of the many possible motions this is
     style : "bridge" for a smooth curve, "perform" for the network's motion
@@ -236,12 +236,7 @@ def _placed(take: Take, request: Request, motion: Array, window: _Window) -> Tak
         made = np.where(np.isnan(known), np.clip(made, 0.0, 1.0), known)
     rows = take.weights[start:stop].copy()
     rows[:, shapes] = made[start - first : stop - first][:, shapes]
-    filled = take.with_rows(start, rows)
-    if len(shapes) < len(SHAPES) or not take.lost[start:stop].any():
-        return filled
-    lost = take.lost.copy()
-    lost[start:stop] = False
-    return replace(filled, lost=lost)
+    return take.with_rows(start, rows, found=np.ones(stop - start, bool))
 
 
 def _resampled(motion: Array, window: _Window, first: int, last: int) -> Array:

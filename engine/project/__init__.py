@@ -15,7 +15,7 @@ from engine.project.records import (
     mark_edit,
     marks_of,
 )
-from engine.project.replaying import Replayed, replay
+from engine.project.replaying import Before, Replayed, replay
 from engine.project.store import ENDING, InUseError, Project, create, delete, peek
 from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
@@ -23,6 +23,7 @@ __all__ = [
     "ENDING",
     "MARK",
     "VISEMES",
+    "Before",
     "Contents",
     "Edit",
     "Found",
