@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +28,7 @@ SHAPES: tuple[str, ...] = (
 )
 SHAPE_INDEX: dict[str, int] = {name: index for index, name in enumerate(SHAPES)}
 MODEL_FPS = 30.0
+T = TypeVar("T", bound=np.generic)
 
 
 def _frozen(array: npt.ArrayLike, dtype: type) -> npt.NDArray[np.generic]:
@@ -137,7 +139,7 @@ class Take:
             ) from None
 
 
-def _owned(array: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+def _owned(array: npt.NDArray[T]) -> npt.NDArray[T]:
     """Return an array of our own as one that nobody can change any more, which a take need not copy."""
     array.flags.writeable = False
     return array

@@ -55,11 +55,12 @@ class EditCommand(QUndoCommand):
         super().__init__(title)
         self._marks = (session.marks, marks) if marks is not None else None
         patch = patch.settled(session.take)
-        rows = slice(patch.start, patch.stop)
+        assert patch.lost is not None
+        rows, take = slice(patch.start, patch.stop), session.take
         self._session, self._start = session, patch.start
-        found = (session.take.weights, session.controls, session.asked, session.take.lost)
-        self._before = tuple(array[rows].copy() for array in found)
-        asked = np.where(patch.asked != self._before[1], patch.asked, self._before[2])
+        had = session.asked[rows].copy()
+        self._before = (take.weights[rows].copy(), session.controls[rows].copy(), had, take.lost[rows].copy())
+        asked = np.where(patch.asked != self._before[1], patch.asked, had)
         self._after = (patch.weights, patch.reached, asked, patch.lost)
         self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {}, patch.lost)
 

@@ -24,6 +24,7 @@ from app.spans.strip import Strip
 from app.widgets.section import Section, empty, quiet
 from engine.errors import EngineError
 from engine.formats import read_take
+from engine.inpaint.request import Style
 from engine.project import Span
 from engine.take import Take, timecode
 
@@ -36,7 +37,7 @@ REGIONS = {
     "left side": "left",
     "right side": "right",
 }
-STYLES = {"as fits the length": "auto", "a performance": "perform", "a smooth bridge": "bridge"}
+STYLES: dict[str, Style] = {"as fits the length": "auto", "a performance": "perform", "a smooth bridge": "bridge"}
 
 
 class SpansSection(Section):
@@ -202,6 +203,7 @@ class SpansSection(Section):
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
             self.guide_by(None)  # it was for the take before
+            self.guide_shift.setValue(0)
         if change & (Change.TAKE | Change.MARKS | Change.SELECTION | Change.VISEMES):
             self._show_list()
             self._show()

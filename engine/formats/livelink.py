@@ -12,16 +12,13 @@ import numpy.typing as npt
 from engine.errors import FormatError
 from engine.formats.content import content_of
 from engine.formats.decimals import floats
-from engine.formats.livelink_header import DEFAULT_HEADER as DEFAULT_HEADER
-from engine.formats.livelink_header import EXPECTED, ROTATIONS, Columns, columns_of
+from engine.formats.livelink_header import DEFAULT_HEADER, EXPECTED, ROTATIONS, Columns, columns_of
 from engine.formats.livelink_origin import Origin, header_of, lost_frames
 from engine.formats.livelink_table import table
-from engine.formats.livelink_write import DAY_S, TICKS_PER_SECOND
-from engine.formats.livelink_write import header as header
-from engine.formats.livelink_write import rows as rows
-from engine.formats.livelink_write import write as write
+from engine.formats.livelink_write import DAY_S, TICKS_PER_SECOND, header, rows, write
 from engine.take import SHAPES, Array, Mask, Take
 
+__all__ = ["DEFAULT_HEADER", "header", "read", "rows", "write"]
 STANDARD_FPS = (24.0, 25.0, 30000 / 1001, 30.0, 48.0, 50.0, 60000 / 1001, 60.0, 120.0)
 MAX_COLUMNS = 1024
 MAX_HEADER_BYTES = 64 * 1024
@@ -58,12 +55,12 @@ def read(
     FormatError : with file, row and column, where the file is not such a take
     """
     content = _content(path)
-    header, begin = _header(content, path)
-    columns = columns_of(tuple(header), path.name, swapped=swap)
-    timecodes, values, lost, starts = table(content, begin, header, path, report)
+    names, begin = _header(content, path)
+    columns = columns_of(tuple(names), path.name, swapped=swap)
+    timecodes, values, lost, starts = table(content, begin, names, path, report)
     if lost.all():
         raise FormatError(f"{path.name} holds no frame with a face.", "The tracker lost the face in every row.")
-    _require_possible(values, header, path)
+    _require_possible(values, names, path)
     clock = _clock(timecodes, fps)
     take = Take(
         *_resample(values, lost, clock, columns),
@@ -89,28 +86,28 @@ def _header(content: bytes, path: Path) -> tuple[list[str], int]:
     if end > MAX_HEADER_BYTES or content.count(b",", 0, end) >= MAX_COLUMNS:
         raise FormatError(f"{path.name} has too many columns in its first row.", EXPECTED)
     try:
-        header = list(header_of(content[:end]))
+        names = list(header_of(content[:end]))
     except UnicodeDecodeError:
         raise FormatError(f"{path.name} is not a text file.", EXPECTED) from None
-    if "\x00" in header[0]:
+    if "\x00" in names[0]:
         raise FormatError(f"{path.name} is not a text file.", EXPECTED)
-    return header, end + 1
+    return names, end + 1
 
 
-def _require_possible(values: Array, header: list[str], path: Path) -> None:
+def _require_possible(values: Array, names: list[str], path: Path) -> None:
     bad = np.argwhere(~np.isfinite(values))
     if len(bad):
         row, column = bad[0]
         raise FormatError(
             f"{path.name} has a value that is not a finite number in row {row + 2}, column {column + 3} "
-            f"({header[column + 2][:40]})."
+            f"({names[column + 2][:40]})."
         )
     huge = np.argwhere(np.abs(values) > LARGEST)
     if len(huge):
         row, column = huge[0]
         raise FormatError(
             f"{path.name} has {values[row, column]:g} in row {row + 2}, column {column + 3} "
-            f"({header[column + 2][:40]}), which no face can do.",
+            f"({names[column + 2][:40]}), which no face can do.",
             "Weights lie in 0..1.",
         )
 

@@ -17,9 +17,7 @@ COMMA, NEWLINE = b",\n"
 Rows = tuple[list[bytes], Array, Mask, Places]
 
 
-def table(
-    content: bytes, first: int, header: list[str], path: Path, report: Callable[[float], None] | None
-) -> Rows:
+def table(content: bytes, first: int, header: list[str], path: Path, report: Callable[[float], None] | None) -> Rows:
     """Split rows into timecodes, (rows, cells - 2) values, lost ones, and where each begins and the last one ends.
 
     A row whose count is 0 is a lost frame, however many cells follow: spreadsheets and pandas fill them up.

@@ -218,4 +218,3 @@ def _number(value: float) -> bytes:
 def _line_and_ending(text: bytes) -> tuple[bytes, bytes]:
     line = text.rstrip(b"\r\n")
     return line, text[len(line) :]
-

@@ -19,7 +19,7 @@ from engine.inpaint.seams import REACH_FRAMES, bridged, land
 from engine.models.resample import interpolate
 from engine.pose import Pose
 from engine.speech.visemes import Cue, classes_over, one_hot
-from engine.take import MODEL_FPS, SHAPES, Array, Mask, Take, runs
+from engine.take import MODEL_FPS, Array, Mask, Take, runs
 
 BRIDGE_S = 0.25  # up to here a smooth curve through the seams is closer to what was there than a performance
 _CONTEXT = 60  # model frames on either side that the network looks at
@@ -122,8 +122,10 @@ def fill_spans(take: Take, spans: Sequence[tuple[int, int]], request: Request, *
         raise EditError(f"The pin at frame {stray[0]} lies outside the span.", "Pins steer frames of the span.")
     for index, (start, stop) in enumerate(ordered):
         inside = {frame: pose for frame, pose in request.pins.items() if start <= frame < stop}
-        spans = {"besides": tuple(ordered), "unmade": tuple(ordered[index + 1 :])}
-        take = refill(take, replace(request, frames=(start, stop), pins=inside, **spans), seeds=(seed,))[0].take
+        part = replace(
+            request, frames=(start, stop), pins=inside, besides=tuple(ordered), unmade=tuple(ordered[index + 1 :])
+        )
+        take = refill(take, part, seeds=(seed,))[0].take
     return take
 
 
@@ -239,7 +241,9 @@ def _placed(take: Take, request: Request, motion: Array, window: _Window) -> Tak
         else _resampled(motion, window, first, last)
     )
     there = np.isfinite(known)
-    if there.any() and not np.array_equal(made[there], known[there]):  # another rate, or a span beside it is not filled yet
+    if there.any() and not np.array_equal(
+        made[there], known[there]
+    ):  # another rate, or a span beside it is not filled yet
         made = land(made, known, reach_frames=REACH_FRAMES * window.pace, hold=_closures(made))
         made = np.where(there, known, np.clip(made, 0.0, 1.0))
     rows = take.weights[start:stop].copy()

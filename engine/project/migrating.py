@@ -6,8 +6,6 @@ import json
 import sqlite3
 from collections.abc import Iterator
 
-import numpy as np
-
 from engine.project.blobs import Budget, DamagedError, unpack, unpack_bytes
 from engine.project.origins import write_text
 from engine.take import Array, Mask

@@ -13,7 +13,6 @@ from engine.project.visemes import VisemeChange, change_of
 from engine.speech.lane import VisemeLane
 from engine.take import Array, Mask, Take
 
-
 Before = tuple[Array, Array, Mask]
 
 

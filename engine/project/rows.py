@@ -13,8 +13,9 @@ import numpy as np
 
 from engine.controls import CONTROL_INDEX, CONTROLS
 from engine.errors import EngineError
-from engine.formats.livelink import DAY_S, MAX_COLUMNS
+from engine.formats.livelink import MAX_COLUMNS
 from engine.formats.livelink_origin import Origin
+from engine.formats.livelink_write import DAY_S
 from engine.project.blobs import Budget, DamagedError, pack, unpack
 from engine.project.origins import read_origin, write_origin
 from engine.project.records import MARK, Contents, Edit, Marks, Media, Note, Pin, Span, Summary, marks_of

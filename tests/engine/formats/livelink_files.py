@@ -63,7 +63,12 @@ def content_of(writer: Writer, lost: np.ndarray, absent: np.ndarray, seed: int, 
     for frame in np.flatnonzero(~absent).tolist():
         cells = [number(value, writer) for value in values[frame]]
         if lost[frame]:
-            padded = {"two cells": [], "empty cells": [""] * columns, "zeros": ["0"] * columns, "short of cells": ["", ""]}
+            padded = {
+                "two cells": [],
+                "empty cells": [""] * columns,
+                "zeros": ["0"] * columns,
+                "short of cells": ["", ""],
+            }
             line = [timecode(start_s + frame / writer.fps), "0", *padded[writer.lost_rows]]
         else:
             line = [timecode(start_s + frame / writer.fps), str(columns), *cells]

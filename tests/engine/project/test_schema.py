@@ -95,14 +95,20 @@ def test_a_file_of_the_first_version_opens_with_all_it_holds(contents: Contents,
 
 
 # As the second version wrote it. Never to be changed either.
-SECOND_VERSION = FIRST_VERSION.replace("user_version = 1", "user_version = 2").replace(
-    "position INTEGER NOT NULL, verdict TEXT NOT NULL", "position INTEGER NOT NULL, verdict TEXT NOT NULL, changed TEXT NOT NULL"
-).replace("sha256 TEXT NOT NULL", "sha256 TEXT NOT NULL, offset_s REAL NOT NULL") + """
+SECOND_VERSION = (
+    FIRST_VERSION.replace("user_version = 1", "user_version = 2")
+    .replace(
+        "position INTEGER NOT NULL, verdict TEXT NOT NULL",
+        "position INTEGER NOT NULL, verdict TEXT NOT NULL, changed TEXT NOT NULL",
+    )
+    .replace("sha256 TEXT NOT NULL", "sha256 TEXT NOT NULL, offset_s REAL NOT NULL")
+    + """
 CREATE TABLE pins (
   place INTEGER PRIMARY KEY,
   frame INTEGER NOT NULL, weights TEXT NOT NULL, start INTEGER NOT NULL, stop INTEGER NOT NULL
 ) STRICT;
 """
+)
 
 
 def test_a_take_in_a_file_of_the_second_version_is_written_as_it_came_and_its_fill_with_it(tmp_path: Path) -> None:
@@ -119,7 +125,9 @@ def test_a_take_in_a_file_of_the_second_version_is_written_as_it_came_and_its_fi
     database.executescript(SECOND_VERSION)
     packed = zlib.compress
     blobs = [packed(array.tobytes()) for array in (take.weights, take.lost, take.rotations)]
-    database.execute("INSERT INTO take VALUES (1, 'demo', ?, ?, ?, ?, ?, ?)", (take.fps, take.start_s, len(take), *blobs))
+    database.execute(
+        "INSERT INTO take VALUES (1, 'demo', ?, ?, ?, ?, ?, ?)", (take.fps, take.start_s, len(take), *blobs)
+    )
     blobs = [packed(array.tobytes()) for array in (np.arange(len(rows)), recorded, lost)]
     database.execute(
         "INSERT INTO origin VALUES (1, ?, ?, ?, ?, ?, ?, ?, 10, x'0a', 1)",
