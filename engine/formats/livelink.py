@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +12,11 @@ import numpy.typing as npt
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
 from engine.formats.content import content_of
-from engine.formats.decimals import floats
+from engine.formats.livelink_clock import Clock, clock_of
+from engine.formats.livelink_sides import Judgement, exchange, exchange_cells, judge, recorded_name, written_recorded
 from engine.formats.livelink_table import table
+from engine.formats.livelink_timecode import DAY_S
+from engine.formats.reading import AUTOMATIC, Reading, Sides
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take
 
 ROTATIONS = (
@@ -24,18 +27,10 @@ ROTATIONS = (
 )
 ROTATION_PLACES = {name: index for index, name in enumerate(ROTATIONS)}
 DEFAULT_HEADER = ("Timecode", "BlendshapeCount", *(f"{name[0].upper()}{name[1:]}" for name in SHAPES), *ROTATIONS)
-# Recorded under each other's names by the app (measured: same-side asymmetries correlate negatively without the swap).
-SWAPPED = (("mouthLeft", "mouthRight"), ("jawLeft", "jawRight"))
-STANDARD_FPS = (24.0, 25.0, 30000 / 1001, 30.0, 48.0, 50.0, 60000 / 1001, 60.0, 120.0)
 TICKS_PER_SECOND = 60.0  # the frame field counts sixtieths of a second, even in a 30 Hz take
-DAY_S = 86400.0
 MAX_COLUMNS = 1024
 MAX_HEADER_BYTES = 64 * 1024
 LARGEST = 1e4  # a weight or an angle beyond this is damage; generators that count in percent stay below
-MAX_INSERTED_SHARE = 1.0  # more missed frames than recorded ones means that the clock is not to be believed
-FALLBACK_FPS = 30.0
-BLOCK_ROWS = 4096  # of timecodes read at once
-COLON = ord(":")
 EXPECTED = "Retake reads the CSV files that Live Link Face records."
 
 
@@ -63,32 +58,26 @@ class Origin:
     swapped: bool = True
 
 
-@dataclass
-class _Clock:
-    """Frame rate and frame number of each row, with what the user should hear about it."""
-
-    fps: float
-    rows: npt.NDArray[np.int64]
-    notices: list[str] = field(default_factory=list)
-
-
-def read(
-    path: Path, report: Callable[[float], None] | None = None, *, fps: float | None = None, swap: bool = True
-) -> Take:
+def read(path: Path, report: Callable[[float], None] | None = None, reading: Reading = AUTOMATIC) -> Take:
     """Read a Live Link Face CSV.
 
     Parameters
     ----------
     path : the file
     report : is told now and then what share of the file is read; what it raises ends the reading
-    fps : frame rate to use instead of the one its timecodes tell
-    swap : exchange left and right of mouth and jaw, which the app records under each other's names
+    reading : the rate, and whose left and right its columns are named by, where that is not to be found out
 
     Raises
     ------
     FormatError : with file, row and column, where the file is not such a take
     """
-    content = _content(path)
+    return parse(_content(path), path, report, reading)
+
+
+def parse(
+    content: bytes, path: Path, report: Callable[[float], None] | None = None, reading: Reading = AUTOMATIC
+) -> Take:
+    """Read what a Live Link Face CSV holds, like `read`; `path` is what errors call it."""
     header, begin = _header(content, path)
     newline = b"\r\n" if b"\r\n" in content[:MAX_HEADER_BYTES] else b"\n"
     columns = _columns(header, path)
@@ -96,43 +85,94 @@ def read(
     if lost.all():
         raise FormatError(f"{path.name} holds no frame with a face.", "The tracker lost the face in every row.")
     _require_possible(values, header, path)
-    clock = _clock(timecodes, fps)
-    take_weights, take_lost, rotations = _resample(values, lost, clock, columns, swap=swap)
+    clock = clock_of(timecodes, reading.fps)
+    judged = _judged(values, lost, columns)
+    swapped = judged.recorded if reading.sides == "automatic" else reading.sides == "recorded"
+    take_weights, take_lost, rotations = _resample(values, lost, clock, columns, swap=swapped)
     decimals = _decimals(content, begin)
-    origin = Origin(tuple(header), tuple(timecodes), clock.rows, values, lost, decimals, newline, swap)
-    take = Take(
+    origin = Origin(tuple(header), tuple(timecodes), clock.rows, values, lost, decimals, newline, swapped)
+    return Take(
         weights=take_weights,
         fps=clock.fps,
         lost=take_lost,
         rotations=rotations,
         name=path.name,
-        notices=tuple(clock.notices),
-        start_s=0.0 if (first := _seconds(timecodes[:1])) is None else float(first[0]),
+        notices=(*clock.notices, *_said_sides(judged, reading)),
+        start_s=clock.start_s,
         origin=origin,
     )
-    suspicion = _side_suspicion(take)
-    return take if suspicion is None else replace(take, notices=(*take.notices, suspicion))
 
 
-def write(take: Take, path: Path) -> None:
+def reread(take: Take, reading: Reading, *, keep: bool = False) -> Take:
+    """Return a take as another reading of its file gives it, its edits with it; frames stay frames.
+
+    The rate is the one that is asked for or that the timecodes tell, and left and right of mouth and jaw are exchanged
+    where they were read otherwise. With `keep`, what is not asked for stays as it is.
+    """
+    origin = take.origin
+    if not isinstance(origin, Origin):
+        return take if reading.fps is None else replace(take, fps=reading.fps)
+    fps = reading.fps or (take.fps if keep else clock_of(origin.timecodes).fps)
+    swapped = origin.swapped
+    if reading.sides != "automatic" or not keep:
+        swapped = judged(origin).recorded if reading.sides == "automatic" else reading.sides == "recorded"
+    if swapped == origin.swapped:
+        return take if fps == take.fps else replace(take, fps=fps)
+    weights = exchange(take.weights)
+    return replace(take, fps=fps, weights=weights, origin=replace(origin, swapped=swapped))
+
+
+def judged(origin: Origin) -> Judgement:
+    """Return what the motion of a file tells of its sides."""
+    return _judged(origin.values, origin.lost, _columns(list(origin.header), Path()))
+
+
+def _judged(values: Array, lost: Mask, columns: dict[str, int]) -> Judgement:
+    return judge({name: values[:, column] for name, column in columns.items()}, ~lost)
+
+
+def _said_sides(judged: Judgement, reading: Reading) -> list[str]:
+    """Say what the motion told, where that is not what most files are."""
+    if reading.sides != "automatic" or judged.agreement is None:
+        return []
+    if not judged.recorded:
+        return [
+            "Left and right of mouth and jaw are taken as named, since the mouth moves with its own side "
+            f"({judged.confidence}, r = {judged.agreement:+.2f})."
+        ]
+    if judged.confidence == "uncertain":
+        return ["Left and right of mouth and jaw are taken as the app records; the motion does not tell for certain."]
+    return []
+
+
+def write(take: Take, path: Path, sides: Sides = "automatic") -> None:
     """Write a take as Live Link Face CSV, in the convention of the file it came from where there was one.
 
     Frames that the source file had missed stay missing and values that were not edited are written as they were read,
-    so that reading and writing a take changes no byte.
+    so that reading and writing a take changes no byte. With `sides` recorded or named, left and right of mouth and jaw
+    are written as the app does or by their names, whatever the file had.
     """
-    write_bytes(path, _encode(take))
+    origin = _origin_of(take)
+    lines: Iterator[bytes] = _encode(take)
+    if written_recorded(sides, swapped=origin.swapped) != origin.swapped:
+        lines = exchange_cells(lines, origin.header)
+    write_bytes(path, lines)
+
+
+def _origin_of(take: Take) -> Origin:
+    return take.origin if isinstance(take.origin, Origin) and _fits(take, take.origin) else _new_origin(take)
 
 
 def _encode(take: Take) -> Iterator[bytes]:
-    origin = take.origin if isinstance(take.origin, Origin) and _fits(take, take.origin) else _new_origin(take)
+    origin = _origin_of(take)
     columns = _columns(list(origin.header), Path(take.name))
     values = origin.values.copy()
     source = take.weights[origin.rows]
-    before, _, _ = _resample(origin.values, origin.lost, _Clock(take.fps, origin.rows), columns, swap=origin.swapped)
+    before, _, _ = _resample(origin.values, origin.lost, Clock(take.fps, origin.rows), columns, swap=origin.swapped)
     changed = source != before[origin.rows]
     for shape, column in columns.items():
         if shape in SHAPE_INDEX:
-            index = SHAPE_INDEX[_recorded_name(shape, swapped=origin.swapped)]
+            index = SHAPE_INDEX[recorded_name(shape, swapped=origin.swapped)]
             values[:, column] = np.where(changed[:, index], source[:, index], values[:, column])
     lost = origin.lost & take.lost[origin.rows]
     yield ",".join(origin.header).encode() + origin.newline
@@ -162,7 +202,7 @@ def rows(times_s: Array, weights: Array, rotations: Array, lost: Mask) -> Iterat
 
 def _recorded_columns(weights: Array, rotations: Array) -> Array:
     """Return (frames, 61) columns as `DEFAULT_HEADER` names them."""
-    order = [SHAPE_INDEX[_recorded_name(name, swapped=True)] for name in SHAPES]
+    order = [SHAPE_INDEX[recorded_name(name, swapped=True)] for name in SHAPES]
     return np.concatenate([weights[:, order], rotations], axis=1)
 
 
@@ -182,15 +222,6 @@ def _format_timecode(ticks: float) -> bytes:
     whole, part = divmod(ticks % (DAY_S * TICKS_PER_SECOND), TICKS_PER_SECOND)
     second = int(whole)
     return f"{second // 3600:02d}:{second // 60 % 60:02d}:{second % 60:02d}:{part:06.3f}".encode()
-
-
-def _recorded_name(shape: str, *, swapped: bool) -> str:
-    """Return the shape whose values stand in the file under the name `shape`."""
-    if swapped:
-        for left, right in SWAPPED:
-            if shape in (left, right):
-                return right if shape == left else left
-    return shape
 
 
 def _content(path: Path) -> bytes:
@@ -246,60 +277,8 @@ def _require_possible(values: Array, header: list[str], path: Path) -> None:
         )
 
 
-def _seconds(timecodes: list[bytes]) -> Array | None:
-    """Return times, (rows,) in seconds, of `HH:MM:SS:FF.mmm`; None where one of them is no time."""
-    if any(timecode.count(b":") != 3 for timecode in timecodes):
-        return None
-    try:
-        parts = np.concatenate(
-            [_parts(timecodes[first : first + BLOCK_ROWS]) for first in range(0, len(timecodes), BLOCK_ROWS)]
-        )
-    except ValueError:
-        return None
-    times = parts @ np.array([3600.0, 60.0, 1.0, 1.0 / TICKS_PER_SECOND])
-    return times if len(times) == len(timecodes) and np.isfinite(times).all() else None
-
-
-def _parts(timecodes: list[bytes]) -> Array:
-    """Return the four numbers of each timecode, (rows, 4); `ValueError` where one is none."""
-    text = np.frombuffer(b":".join(timecodes) + b":", np.uint8)
-    ends = np.flatnonzero(text == COLON)
-    return floats(text, np.concatenate([[0], ends[:-1] + 1]), ends).reshape(-1, 4)
-
-
-def _clock(timecodes: list[bytes], fps: float | None) -> _Clock:
-    rows = np.arange(len(timecodes))
-    if fps is not None:
-        return _Clock(fps, rows)
-    if len(timecodes) == 1:
-        return _Clock(FALLBACK_FPS, rows, [f"One frame has no rate: taken as {FALLBACK_FPS:g} fps."])
-    times = _seconds(timecodes)
-    fallback = _Clock(FALLBACK_FPS, rows, [f"The timecodes make no sense: taken as {FALLBACK_FPS:g} fps, row by row."])
-    if times is None:
-        return fallback
-    steps = np.diff(times)
-    steps = np.where(steps < -DAY_S / 2, steps + DAY_S, steps)  # past midnight
-    typical = float(np.median(steps))
-    if typical <= 1 / 1000 or typical > 0.5 or (steps <= 0).any():
-        return fallback
-    single = steps[np.abs(steps / typical - 1) < 0.5]
-    rate = 1 / float(single.mean())
-    increments = np.maximum(1, np.round(steps * rate)).astype(np.int64)
-    inserted = int(increments.sum() - len(increments))
-    if inserted > MAX_INSERTED_SHARE * len(timecodes):
-        return fallback
-    frame = np.concatenate([[0], np.cumsum(increments)])
-    notices = [f"{inserted} missed frames were filled in by interpolation."] if inserted else []
-    return _Clock(_snap(rate), frame, notices)
-
-
-def _snap(rate: float) -> float:
-    nearest = min(STANDARD_FPS, key=lambda standard: abs(standard - rate))
-    return nearest if abs(nearest / rate - 1) < 5e-4 else rate
-
-
 def _resample(
-    values: Array, lost: Mask, clock: _Clock, columns: dict[str, int], *, swap: bool
+    values: Array, lost: Mask, clock: Clock, columns: dict[str, int], *, swap: bool
 ) -> tuple[Array, Mask, Array]:
     """Put rows on the constant clock; missed and lost frames are interpolated, and lost ones marked."""
     frames = int(clock.rows[-1]) + 1
@@ -308,7 +287,7 @@ def _resample(
     grid, seen = np.arange(frames), clock.rows[~lost]
     whole = frames == len(values) and not lost.any()
     for kept, places in ((weights, SHAPE_INDEX), (rotations, ROTATION_PLACES)):
-        found = {places[_recorded_name(name, swapped=swap)]: at for name, at in columns.items() if name in places}
+        found = {places[recorded_name(name, swapped=swap)]: at for name, at in columns.items() if name in places}
         recorded = values[:, list(found.values())]  # all of a row at once, as it lies in memory
         if whole:
             kept[:, list(found)] = recorded
@@ -329,18 +308,3 @@ def _decimals(content: bytes, first: int) -> int:
         cells, first = content[first:end].split(b","), end + 1
     digits = [len(cell.strip().partition(b".")[2]) for cell in cells[2:]]
     return min(max(digits, default=10), 17) or 10
-
-
-def _side_suspicion(take: Take) -> str | None:
-    """Say so when the mouth still leans against its own side: the swap was wrong for this file, or missing."""
-    side = take.curve("mouthLeft") - take.curve("mouthRight")
-    if side.std() < 0.02:
-        return None
-    correlations = []
-    for pair in ("mouthDimple", "mouthStretch", "cheekSquint"):
-        other = take.curve(f"{pair}Left") - take.curve(f"{pair}Right")
-        if other.std() > 0.005:
-            correlations.append(float(np.corrcoef(side, other)[0, 1]))
-    if len(correlations) >= 2 and max(correlations) < -0.3:
-        return "Left and right of the mouth look exchanged: try the import without the swap."
-    return None

@@ -12,7 +12,8 @@ import numpy as np
 
 from engine.controls import CONTROL_INDEX, CONTROLS
 from engine.errors import EngineError
-from engine.formats.livelink import DAY_S, MAX_COLUMNS, Origin
+from engine.formats.livelink import MAX_COLUMNS, Origin
+from engine.formats.livelink_timecode import DAY_S
 from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
 from engine.project.records import MARK, Contents, Edit, Marks, Media, Note, Pin, Span, Summary, marks_of
 from engine.project.replaying import said
