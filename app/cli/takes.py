@@ -27,7 +27,9 @@ def info(
 ) -> None:
     """Say what a take holds: length, rate, lost spans, the reach of its controls."""
     from engine.controls import CONTROLS, measure
-    from engine.formats.importing import imported
+    from engine.formats import livelink
+    from engine.formats.importing import imported, in_words
+    from engine.formats.reading import Reading
 
     opened = open_take(take, fps, sides)
     measured = measure(opened.weights)
@@ -42,7 +44,9 @@ def info(
         )
         typer.echo(f"{int(opened.lost.sum()):,} frames lost; head {'recorded' if opened.has_head else 'not recorded'}")
         if (origin := imported(opened)) is not None:
-            typer.echo(f"rate: {origin.rate_reason}; sides: {origin.sides} ({origin.sides_reason})")
+            swapped = livelink.read_as(opened).swapped
+            why = origin.rate_reason(opened.fps, Reading(fps))
+            typer.echo(f"rate: {why}; sides: {in_words(swapped)} ({origin.sides_reason(swapped=swapped)})")
         for notice in opened.notices:
             typer.echo(notice)
     show(f"{opened.name}, {len(opened)} frames, {opened.fps:g} fps", rows, as_json=as_json)

@@ -175,7 +175,7 @@ class Filling(QObject):
         self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE or (change & Change.CURVES and self.variants):
+        if change & (Change.TAKE | Change.READING) or (change & Change.CURVES and self.variants):
             self._forget()
 
 

@@ -16,7 +16,7 @@ from engine.formats.livelink_clock import Clock, clock_of
 from engine.formats.livelink_sides import Judgement, exchange, exchange_cells, judge, recorded_name, written_recorded
 from engine.formats.livelink_table import table
 from engine.formats.livelink_timecode import DAY_S
-from engine.formats.reading import AUTOMATIC, Reading, Sides
+from engine.formats.reading import AUTOMATIC, ReadAs, Reading, Sides
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take
 
 ROTATIONS = (
@@ -109,17 +109,38 @@ def reread(take: Take, reading: Reading, *, keep: bool = False) -> Take:
     The rate is the one that is asked for or that the timecodes tell, and left and right of mouth and jaw are exchanged
     where they were read otherwise. With `keep`, what is not asked for stays as it is.
     """
+    if keep and reading == AUTOMATIC:
+        return take
+    if keep and reading.fps is None:
+        reading = replace(reading, fps=take.fps)
+    if keep and reading.sides == "automatic":
+        reading = replace(reading, sides="recorded" if read_as(take).swapped else "named")
+    found = resolved(take, reading)
+    return put(take, found)
+
+
+def resolved(take: Take, reading: Reading) -> ReadAs:
+    """Return what a reading of the file of a take comes to; where there is none, the rate is the take's own."""
     origin = take.origin
     if not isinstance(origin, Origin):
-        return take if reading.fps is None else replace(take, fps=reading.fps)
-    fps = reading.fps or (take.fps if keep else clock_of(origin.timecodes).fps)
-    swapped = origin.swapped
-    if reading.sides != "automatic" or not keep:
-        swapped = judged(origin).recorded if reading.sides == "automatic" else reading.sides == "recorded"
-    if swapped == origin.swapped:
-        return take if fps == take.fps else replace(take, fps=fps)
-    weights = exchange(take.weights)
-    return replace(take, fps=fps, weights=weights, origin=replace(origin, swapped=swapped))
+        return ReadAs(reading, float(reading.fps or take.fps), swapped=True)
+    swapped = judged(origin).recorded if reading.sides == "automatic" else reading.sides == "recorded"
+    return ReadAs(reading, float(reading.fps or clock_of(origin.timecodes).fps), swapped)
+
+
+def read_as(take: Take) -> ReadAs:
+    """Return what a take was read as."""
+    return ReadAs(AUTOMATIC, float(take.fps), take.origin.swapped if isinstance(take.origin, Origin) else True)
+
+
+def put(take: Take, wanted: ReadAs) -> Take:
+    """Return a take with a rate and sides; putting back what it was read as gives it back to the bit."""
+    if wanted.fps != take.fps:
+        take = replace(take, fps=wanted.fps)
+    origin = take.origin
+    if not isinstance(origin, Origin) or origin.swapped == wanted.swapped:
+        return take
+    return replace(take, weights=exchange(take.weights), origin=replace(origin, swapped=wanted.swapped))
 
 
 def judged(origin: Origin) -> Judgement:

@@ -15,7 +15,20 @@ from engine.errors import EngineError
 from engine.formats.livelink import MAX_COLUMNS, Origin
 from engine.formats.livelink_timecode import DAY_S
 from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
-from engine.project.records import MARK, Contents, Edit, Marks, Media, Note, Pin, Span, Summary, marks_of
+from engine.project.records import (
+    MARK,
+    READING,
+    Contents,
+    Edit,
+    Marks,
+    Media,
+    Note,
+    Pin,
+    Span,
+    Summary,
+    marks_of,
+    read_as_of,
+)
 from engine.project.replaying import said
 from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
@@ -174,6 +187,8 @@ def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> It
         if kind == MARK:
             for marks in ("before", "after"):
                 _require_sound(_marks_in(made_from, marks), length)
+        if kind == READING:
+            _require_readings(made_from)
         yield Edit(kind, title, start, rows, _read_asked(asked, _texts(controls, budget), frames, budget), made_from)
 
 
@@ -249,6 +264,14 @@ def _marks_in(inputs: dict[str, Any], name: str) -> Marks:
         return marks_of(inputs[name])
     except (KeyError, TypeError) as error:
         raise DamagedError("an edit does not say what it marked") from error
+
+
+def _require_readings(inputs: dict[str, Any]) -> None:
+    try:
+        for which in ("before", "after"):
+            read_as_of(inputs[which])
+    except (KeyError, TypeError, EngineError) as error:
+        raise DamagedError("an edit does not say how the take is read") from error
 
 
 def _texts(text: str, budget: Budget) -> tuple[str, ...]:
