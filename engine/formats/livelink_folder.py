@@ -45,22 +45,29 @@ class Parts:
     Attributes
     ----------
     table : the file of its frames, calibrated where there is such a one
-    raw : whether there is an uncalibrated file beside that
+    calibrated, raw : the names of those files, where they are there
     film, card : the video, and what the app says of the take, where they are there
     """
 
     table: str
-    raw: bool
+    calibrated: str | None
+    raw: str | None
     film: str | None
     card: str | None
 
 
 def is_one(path: Path) -> bool:
-    """Whether a path leads to a take of several files: its folder, its zip, or one of them that is no table of frames."""
-    name = path.name.lower()
-    if path.suffix.lower() == ".zip" or name == CARD or name.endswith(f"{NEUTRAL}.csv"):
+    """Whether a path leads to a take of several files: its folder, its zip, or one of them."""
+    if path.suffix.lower() == ".zip" or path.name.lower() == CARD or _kind(path.name):
         return True
-    return path.is_dir() or (path.suffix.lower() in film.ENDINGS and has_table_beside(path))
+    return _is_folder(path) or (path.suffix.lower() in film.ENDINGS and has_table_beside(path))
+
+
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except OSError:  # a name that no file system takes
+        return False
 
 
 def has_table_beside(path: Path) -> bool:
@@ -75,10 +82,10 @@ def has_table_beside(path: Path) -> bool:
 
 def table_of(path: Path) -> Path:
     """Return the file in which the frames of a take are; the path itself where it is that, or a zip."""
-    if path.suffix.lower() == ".zip" or not is_one(path):
+    if path.suffix.lower() == ".zip" or _kind(path.name) in (CALIBRATED, RAW) or not is_one(path):
         return path
-    folder = path if path.is_dir() else path.parent
-    return folder / _parts(_listed(folder), folder.name or str(folder), like=None if path.is_dir() else path.name).table
+    folder, like = (path, None) if _is_folder(path) else (path.parent, path.name)
+    return folder / _parts(_listed(folder), folder.name or str(folder), like).table
 
 
 def read(path: Path, report: Callable[[float], None] | None = None, reading: Reading = AUTOMATIC) -> Take:
@@ -86,9 +93,10 @@ def read(path: Path, report: Callable[[float], None] | None = None, reading: Rea
     if path.suffix.lower() == ".zip":
         return _read_zip(path, report, reading)
     table = table_of(path)
+    take = livelink.read(table, report, reading)
     parts = _parts(_listed(table.parent), table.parent.name, like=table.name)
     card = _card(table.with_name(parts.card)) if parts.card is not None else None
-    return _checked(livelink.read(table, report, reading), parts, card, reading)
+    return _checked(take, parts, card, reading)
 
 
 def copy_film(path: Path, folder: Path) -> Path | None:
@@ -133,10 +141,11 @@ def _checked(take: Take, parts: Parts, target_fps: float | None, reading: Readin
     """Return a take with what is to be said of its files, and with the target rate where its clock tells none."""
     said = []
     name = _path(parts.table).name
-    if parts.raw and _kind(name) == CALIBRATED:
+    if parts.table == parts.calibrated and parts.raw is not None:
         said.append(f"{name}, the calibrated file of the take, was opened; the raw one lies beside it.")
-    elif parts.raw and _kind(name) == RAW:
-        said.append(f"{name} is the raw file of the take.")
+    elif parts.table == parts.raw:
+        other = f"; {_path(parts.calibrated).name} is the calibrated one" if parts.calibrated is not None else ""
+        said.append(f"{name} is the raw file of the take{other}.")
     if target_fps is not None and reading.fps is None:
         assumed = any("row by row" in notice or notice.startswith(("One frame", "The rows")) for notice in take.notices)
         if assumed and take.fps == FALLBACK_FPS:
@@ -174,7 +183,8 @@ def _parts(names: Iterable[str], where: str, like: str | None = None) -> Parts:
     own = [name for name in films if _stem(name) == stem]
     card = next((name for name in beside if _path(name).name.lower() == CARD), None)
     chosen = own[0] if own else films[0] if len(films) == 1 and card is not None else None
-    return Parts(table or group[0], any(_kind(name) == RAW for name in group), chosen, card)
+    by_kind = {_kind(name): name for name in group}
+    return Parts(table or group[0], by_kind.get(CALIBRATED), by_kind.get(RAW), chosen, card)
 
 
 def _best(group: list[str]) -> str:
@@ -190,8 +200,9 @@ def _path(name: str) -> PurePosixPath:
 
 
 def _kind(name: str) -> str:
-    stem = _path(name).stem.lower()
-    return next((kind for kind in KINDS if stem.endswith(kind)), "")
+    """Return which table of a take a file is by its name; empty where it is a take's only one, or no table."""
+    lower = name.lower()
+    return next((kind for kind in KINDS if lower.endswith(f"{kind}.csv")), "")
 
 
 def _stem(name: str) -> str:

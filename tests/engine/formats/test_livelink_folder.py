@@ -65,7 +65,10 @@ def test_a_zip_is_the_same_take(tmp_path: Path, prefix: str) -> None:
 
 def test_the_raw_file_opens_where_it_is_chosen_or_alone(tmp_path: Path) -> None:
     folder = handed_over(tmp_path / "both")
-    assert opened(read_take(folder / "MySlate_1_iPhone_raw.csv")) == RAW
+    raw = read_take(folder / "MySlate_1_iPhone_raw.csv")
+    assert opened(raw) == RAW and any("_cal.csv is the calibrated one" in notice for notice in raw.notices)
+    calibrated = read_take(folder / "MySlate_1_iPhone_cal.csv")
+    assert opened(calibrated) == CALIBRATED and any("was opened" in notice for notice in calibrated.notices)
     alone = handed_over(tmp_path / "alone", kinds="raw neutral")
     take = read_take(alone)
     assert opened(take) == RAW and any("raw" in notice for notice in take.notices)
@@ -218,6 +221,12 @@ def test_names_in_a_zip_lead_nowhere(tmp_path: Path, name: str) -> None:
     copied = livelink_folder.copy_film(path, tmp_path / "films")
     assert copied is not None and copied.read_bytes() == b"a film"
     assert set(tmp_path.rglob("*")) - before == {tmp_path / "films", copied}
+
+
+@pytest.mark.parametrize("name", ["gone_cal.csv", "gone_raw.csv", "y" * 300 + ".csv", "y" * 300, "nul\0l.zip"])
+def test_a_file_that_is_not_there_is_one_sentence(tmp_path: Path, name: str) -> None:
+    with pytest.raises(FormatError):
+        read_take(tmp_path / name)
 
 
 def test_a_folder_without_a_take_is_one_sentence(tmp_path: Path) -> None:
