@@ -10,8 +10,10 @@ from PySide6.QtGui import QUndoCommand
 
 from app.session.session import MEDIA, Session
 from engine.controls import bundled_measurer
+from engine.formats.reading import ReadAs
 from engine.project import (
     MARK,
+    READING,
     Contents,
     Edit,
     Marks,
@@ -20,6 +22,8 @@ from engine.project import (
     change_between,
     mark_edit,
     marks_of,
+    read_as_of,
+    reading_edit,
     viseme_edit,
 )
 from engine.speech.lane import VisemeLane
@@ -179,6 +183,39 @@ class VisemesCommand(QUndoCommand):
         self._session.set_visemes(self._change.inverse.applied(self._session.visemes))
 
 
+class ReadingCommand(QUndoCommand):
+    """Reads the open take with another rate or other sides; the edits stay, and undoing goes back to the bit.
+
+    Parameters
+    ----------
+    session : whose take
+    reading : what it becomes
+    title : what the user did, as the Undo menu shows it
+    """
+
+    def __init__(self, session: Session, reading: ReadAs, title: str) -> None:
+        super().__init__(title)
+        self._session, self._before, self._after = session, session.reading, reading
+        self.edit = reading_edit(title, self._before, reading)
+
+    @classmethod
+    def restored(cls, session: Session, edit: Edit) -> ReadingCommand:
+        """Return the command of a stored edit."""
+        command = cls.__new__(cls)
+        QUndoCommand.__init__(command, edit.title)
+        command._session, command.edit = session, edit
+        command._before, command._after = read_as_of(edit.inputs["before"]), read_as_of(edit.inputs["after"])
+        return command
+
+    def redo(self) -> None:
+        """Do it, first or again."""
+        self._session.read_as(self._after)
+
+    def undo(self) -> None:
+        """Take it back."""
+        self._session.read_as(self._before)
+
+
 def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[QUndoCommand]:
     """Yield the commands of a project's edits, oldest first."""
     for edit, before, change in zip(contents.edits, state.before, state.changes, strict=True):
@@ -186,5 +223,7 @@ def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[
             yield VisemesCommand.restored(session, edit, change)
         elif edit.kind == MARK:
             yield MarkCommand.restored(session, edit)
+        elif edit.kind == READING:
+            yield ReadingCommand.restored(session, edit)
         else:
             yield EditCommand.restored(session, edit, before)

@@ -192,7 +192,7 @@ class Filling(QObject):
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
             self.seed, self._seen = 0, None
-        if change & Change.TAKE or (change & Change.CURVES and self.variants):
+        if change & (Change.TAKE | Change.READING) or (change & Change.CURVES and self.variants):
             self._forget()
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
+from engine.formats.livelink_sides import recorded_name
 from engine.take import SHAPE_INDEX, SHAPES
 
 ROTATIONS = (
@@ -18,8 +19,6 @@ ROTATIONS = (
 )
 ROTATION_INDEX = {name: index for index, name in enumerate(ROTATIONS)}
 DEFAULT_HEADER = ("Timecode", "BlendshapeCount", *(f"{name[0].upper()}{name[1:]}" for name in SHAPES), *ROTATIONS)
-# Recorded under each other's names by the app (measured: same-side asymmetries correlate negatively without the swap).
-SWAPPED = (("mouthLeft", "mouthRight"), ("jawLeft", "jawRight"))
 EXPECTED = "Retake reads the CSV files that Live Link Face records."
 Places = npt.NDArray[np.int64]
 
@@ -58,12 +57,3 @@ def columns_of(header: tuple[str, ...], name: str, *, swapped: bool) -> Columns:
     pairs = [[(index, found[cell]) for index, cell in group if cell in found] for group in (shapes, rotations)]
     arrays = [np.array(pair, np.int64).reshape(-1, 2).T for pair in pairs]
     return Columns(*arrays[0], *arrays[1])
-
-
-def recorded_name(shape: str, *, swapped: bool) -> str:
-    """Return the shape whose values stand in the file under the name `shape`."""
-    if swapped:
-        for left, right in SWAPPED:
-            if shape in (left, right):
-                return right if shape == left else left
-    return shape

@@ -26,7 +26,6 @@ class Origin:
     rows : (rows,) the take's frame that each row became, rising
     lost : (rows,) bool, rows without a face
     weights, rotations : (frames, 52) and (frames, 9), the take as read
-    fps : frame rate that it was read at
     swapped : whether left and right of mouth and jaw were exchanged on import
     """
 
@@ -36,7 +35,6 @@ class Origin:
     lost: Mask
     weights: Array
     rotations: Array
-    fps: float
     swapped: bool = True
 
     def __len__(self) -> int:
@@ -52,9 +50,16 @@ class Origin:
         """The names of the columns, as the file spells them."""
         return header_of(self.head)
 
+    @property
+    def timecodes(self) -> list[bytes]:
+        """The first cell of each row."""
+        bounds = zip(self.starts[:-1].tolist(), self.starts[1:].tolist(), strict=True)
+        cells = (self.content[start : self.content.find(b",", start, stop)] for start, stop in bounds)
+        return [cell.strip() for cell in cells]
+
     def fits(self, take: Take) -> bool:
-        """Whether a take still has this file's frames and rate."""
-        return len(take) == len(self.weights) and take.fps == self.fps
+        """Whether a take still has this file's frames."""
+        return len(take) == len(self.weights)
 
     def text(self, first: int, last: int) -> bytes:
         """Return the text of rows, half-open, with their line endings."""
@@ -89,6 +94,7 @@ def lost_frames(rows: Places, lost: Mask, fps: float) -> Mask:
     ----------
     rows : (rows,) the frame that each row of a file is, rising
     lost : (rows,) bool, rows without a face
+    fps : frames per second by the file's own clock, whatever the take is played at
     """
     frames = np.zeros(int(rows[-1]) + 1, bool)
     frames[rows[lost]] = True

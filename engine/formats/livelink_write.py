@@ -2,40 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from engine.formats.atomic import write_bytes
-from engine.formats.livelink_header import DEFAULT_HEADER, ROTATIONS, Columns, Places, columns_of, recorded_name
+from engine.formats.livelink_clock import clock_of, timecodes_between
+from engine.formats.livelink_header import DEFAULT_HEADER, ROTATIONS, Columns, Places, columns_of
 from engine.formats.livelink_origin import Origin, lost_frames
+from engine.formats.livelink_sides import exchange_cells, recorded_name, written_recorded
+from engine.formats.livelink_timecode import Style
+from engine.formats.reading import Sides
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take
 
-TICKS_PER_SECOND = 60.0  # the frame field counts sixtieths of a second, even in a 30 Hz take
-DAY_S = 86400.0
 DECIMALS = 10  # as the app writes a value
 UNSEEN = 0.01  # of a weight; a column that a file lacks is added to all of its rows only for more than this
 SAME = 1e-9  # values that differ by less are written alike
 
 
-def write(take: Take, path: Path) -> None:
+def write(take: Take, path: Path, sides: Sides = "automatic") -> None:
     """Write a take as Live Link Face CSV.
 
     Rows of the file it came from are written as the text they came as, to the byte, where nobody changed them. A frame
     that was given motion has a full row, whether its row had no face or was absent; one that is still lost has none.
+    With `sides` recorded or named, left and right of mouth and jaw are written as the app does or by their names,
+    whatever the file had.
     """
-    write_bytes(path, encode(take))
+    origin = _origin_of(take)
+    swapped, names = (origin.swapped, origin.header) if origin is not None else (True, DEFAULT_HEADER)
+    if written_recorded(sides, swapped=swapped) == swapped:
+        write_bytes(path, encode(take))
+    else:
+        write_bytes(path, exchange_cells(_lines(encode(take)), names))
 
 
 def encode(take: Take) -> Iterator[bytes]:
-    """Yield the bytes of a take's file, piece by piece."""
-    if isinstance(take.origin, Origin) and take.origin.fits(take):
-        yield from _Rewriting(take, take.origin).pieces()
+    """Yield the bytes of a take's file, piece by piece; each ends where a row does."""
+    origin = _origin_of(take)
+    if origin is not None:
+        yield from _Rewriting(take, origin).pieces()
     else:
         yield header()
         yield from rows(take.start_s + np.arange(len(take)) / take.fps, take.weights, take.rotations, take.lost)
+
+
+def _origin_of(take: Take) -> Origin | None:
+    return take.origin if isinstance(take.origin, Origin) and take.origin.fits(take) else None
+
+
+def _lines(pieces: Iterable[bytes]) -> Iterator[bytes]:
+    for piece in pieces:
+        yield from (line for line in re.split(rb"(?<=\n)", piece) if line)
 
 
 def header() -> bytes:
@@ -50,28 +70,7 @@ def rows(times_s: Array, weights: Array, rotations: Array, lost: Mask) -> Iterat
     row_format = ",".join([f"%.{DECIMALS}f"] * values.shape[1])
     for time_s, row, is_lost in zip(times_s.tolist(), values, lost.tolist(), strict=True):
         body = "0" if is_lost else f"{values.shape[1]},{row_format % tuple(row.tolist())}"
-        yield b"%s,%s\n" % (timecode_of(time_s), body.encode())
-
-
-def timecode_of(time_s: float, *, ticks: float = TICKS_PER_SECOND, like: bytes = b"00:00:00:00.000") -> bytes:
-    """Return `HH:MM:SS:FF.fff` for seconds since midnight; FF counts `ticks` a second, with as many digits as `like`."""
-    whole, _, part = like.strip().rpartition(b":")[2].partition(b".")
-    decimals = len(part)
-    ticks_now = round((time_s % DAY_S) * ticks, decimals) % (DAY_S * ticks)
-    second, field = divmod(ticks_now, ticks)
-    width = len(whole) + (decimals + 1 if decimals else 0)
-    clock = f"{int(second) // 3600:02d}:{int(second) // 60 % 60:02d}:{int(second) % 60:02d}"
-    return f"{clock}:{field:0{width}.{decimals}f}".encode()
-
-
-def seconds_of(timecode: bytes, *, ticks: float = TICKS_PER_SECOND) -> float | None:
-    """Return the seconds since midnight that `HH:MM:SS:FF.fff` names, None where it names none."""
-    try:
-        hours, minutes, seconds, field = (float(part) for part in timecode.split(b":"))
-    except ValueError:
-        return None
-    time_s = 3600 * hours + 60 * minutes + seconds + field / ticks
-    return time_s if np.isfinite(time_s) else None
+        yield b"%s,%s\n" % (Style().write(time_s), body.encode())
 
 
 class _Rewriting:
@@ -114,6 +113,13 @@ class _Rewriting:
         yield origin.content[origin.starts[done] :]
 
     @cached_property
+    def _timecodes(self) -> dict[int, bytes]:
+        """Timecodes of the inserted frames, in sequence and as the file writes them."""
+        origin, frames = self._origin, self._inserted.tolist()
+        texts = timecodes_between(origin.timecodes, origin.rows, frames, fps=self._take.fps)
+        return dict(zip(frames, texts, strict=True))
+
+    @cached_property
     def _extra(self) -> list[tuple[str, Array]]:
         """Columns that the file lacks although the take has something to say there, with their values, (frames,)."""
         columns, take = self._columns, self._take
@@ -146,10 +152,8 @@ class _Rewriting:
     def _new_row(self, row: int, frame: int) -> bytes:
         """Return the line of a frame that has no row, between a row and the next."""
         origin = self._origin
-        first, last = (origin.text(place, place + 1).partition(b",")[0] for place in (row, row + 1))
         _, ending = _line_and_ending(origin.text(row, row + 1))
-        share = (frame - origin.rows[row]) / (origin.rows[row + 1] - origin.rows[row])
-        timecode = _between(first, last, float(share))
+        timecode = self._timecodes[frame]
         return (timecode + b",0" if self._take.lost[frame] else self._in_full(timecode, row, frame)) + ending
 
     def _in_full(self, timecode: bytes, row: int, frame: int) -> bytes:
@@ -186,10 +190,11 @@ def _inserted(take: Take, origin: Origin) -> Places:
     rows, absent = origin.rows, np.setdiff1d(np.arange(len(take)), origin.rows)
     gap = np.searchsorted(origin.rows, absent)
     inserted: Places = np.zeros(0, np.int64)
+    fps = clock_of(origin.timecodes).fps if len(absent) else take.fps
     while len(absent):
         lost = take.lost[rows]
         seen = rows[~lost]
-        told_lost = lost_frames(rows, lost, take.fps)[absent]
+        told_lost = lost_frames(rows, lost, fps)[absent]
         wrong = told_lost != take.lost[absent]
         if len(seen):
             for curves in (take.weights, take.rotations):
@@ -201,14 +206,6 @@ def _inserted(take: Take, origin: Origin) -> Places:
         inserted, rows = np.union1d(inserted, absent[now]), np.union1d(rows, absent[now])
         absent, gap = absent[~now], gap[~now]
     return inserted
-
-
-def _between(before: bytes, after: bytes, share: float) -> bytes:
-    """Return the timecode a share of the way from one to another, written like the first."""
-    first, last = seconds_of(before), seconds_of(after)
-    if first is None or last is None:
-        return before
-    return timecode_of(first + share * ((last - first) % DAY_S), like=before)
 
 
 def _number(value: float) -> bytes:

@@ -53,7 +53,7 @@ def read_origin(database: sqlite3.Connection, take: Take, budget: Budget) -> Ori
     except ValueError as error:
         raise DamagedError("the file it came from is not possible") from error
     frames = rows.astype(np.int64)
-    return Origin(content, starts, frames, lost, take.weights, take.rotations, take.fps, bool(swapped))
+    return Origin(content, starts, frames, lost, take.weights, take.rotations, bool(swapped))
 
 
 def _read_text(database: sqlite3.Connection, budget: Budget) -> bytes:

@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 
 from engine.controls import CONTROLS
+from engine.formats.reading import ReadAs, Reading
 from engine.take import SHAPES, Array, Mask, Take
 
 MARK = "mark"  # kind of an edit whose inputs are marks before and after
 FILL = "fill"  # kind of an edit that gave every one of its frames motion
 VISEMES = "visemes"  # kind of an edit whose inputs are a step on the visemes lane
+FASTEST_FPS = 10_000.0
+READING = "reading"  # kind of an edit whose inputs are how the take is read before and after
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,6 +139,23 @@ def mark_edit(title: str, before: Marks, after: Marks) -> Edit:
     """Return the edit that changes marks and no frame."""
     rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
     return Edit(MARK, title, 0, *rows, {"before": asdict(before), "after": asdict(after)})
+
+
+def reading_edit(title: str, before: ReadAs, after: ReadAs) -> Edit:
+    """Return the edit that changes how the take is read and no frame."""
+    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
+    return Edit(READING, title, 0, *rows, {"before": asdict(before), "after": asdict(after)})
+
+
+def read_as_of(stored: Mapping[str, Any]) -> ReadAs:
+    """Return a reading from what `dataclasses.asdict` made of it.
+
+    Raises `KeyError`, `TypeError` or `EditError` for anything else.
+    """
+    fps, swapped = stored["fps"], stored["swapped"]
+    if type(swapped) is not bool or type(fps) is not float or not 0.0 < fps <= FASTEST_FPS:
+        raise TypeError("a reading has a rate, and sides that are exchanged or not")
+    return ReadAs(Reading(**stored["chosen"]), fps, swapped)
 
 
 @dataclass(frozen=True, eq=False)

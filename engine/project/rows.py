@@ -15,10 +15,23 @@ from engine.controls import CONTROL_INDEX, CONTROLS
 from engine.errors import EngineError
 from engine.formats.livelink import MAX_COLUMNS
 from engine.formats.livelink_origin import Origin
-from engine.formats.livelink_write import DAY_S
+from engine.formats.livelink_timecode import DAY_S
 from engine.project.blobs import Budget, DamagedError, pack, unpack
 from engine.project.origins import read_origin, write_origin
-from engine.project.records import MARK, Contents, Edit, Marks, Media, Note, Pin, Span, Summary, marks_of
+from engine.project.records import (
+    MARK,
+    READING,
+    Contents,
+    Edit,
+    Marks,
+    Media,
+    Note,
+    Pin,
+    Span,
+    Summary,
+    marks_of,
+    read_as_of,
+)
 from engine.project.replaying import said
 from engine.project.tables import insert
 from engine.take import SHAPE_INDEX, SHAPES, Array, Take
@@ -138,6 +151,8 @@ def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> It
         if kind == MARK:
             for marks in ("before", "after"):
                 _require_sound(_marks_in(made_from, marks), length)
+        if kind == READING:
+            _require_readings(made_from)
         asked_rows = _read_asked(asked, _texts(controls, budget), frames, budget)
         still = None if lost is None else unpack(lost, (frames,), "u1", budget) != 0
         yield Edit(kind, title, start, rows, asked_rows, made_from, still)
@@ -215,6 +230,14 @@ def _marks_in(inputs: dict[str, Any], name: str) -> Marks:
         return marks_of(inputs[name])
     except (KeyError, TypeError) as error:
         raise DamagedError("an edit does not say what it marked") from error
+
+
+def _require_readings(inputs: dict[str, Any]) -> None:
+    try:
+        for which in ("before", "after"):
+            read_as_of(inputs[which])
+    except (KeyError, TypeError, EngineError) as error:
+        raise DamagedError("an edit does not say how the take is read") from error
 
 
 def _texts(text: str, budget: Budget) -> tuple[str, ...]:

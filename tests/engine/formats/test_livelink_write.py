@@ -17,6 +17,7 @@ from engine.errors import EditError
 from engine.formats import livelink
 from engine.formats.livelink_origin import GAP_S, Origin
 from engine.formats.livelink_write import UNSEEN, encode
+from engine.formats.reading import Reading, Sides
 from engine.inpaint.fill import fill, fill_lost
 from engine.manifold.retarget import retarget_weights
 from engine.performance import demo
@@ -29,10 +30,10 @@ JAW, TONGUE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["tongueOut"]  # the last of al
 Frames = tuple[int, int]
 
 
-def read(content: bytes, folder: Path) -> Take:
+def read(content: bytes, folder: Path, sides: Sides = "recorded") -> Take:
     path = folder / "take.csv"
     path.write_bytes(content)
-    return livelink.read(path)
+    return livelink.read(path, reading=Reading(sides=sides))  # random motion would tell of either
 
 
 def written(take: Take) -> bytes:
