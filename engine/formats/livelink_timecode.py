@@ -259,7 +259,8 @@ def _base(fields: Array) -> int | None:
     odd, many = counted.most_common(1)[0]
     sure = many >= 3 and many > max(0.6 * len(held), votes[best]) and FEWEST <= odd <= MOST and counts.max() <= odd
     if sure and abs(odd - APP_BASE) > 2 * usual:
-        return odd
+        uneven = float((inner > 1.5 * np.median(inner)).mean()) > 0.1  # cut off to counts that a rate does not divide
+        return odd + 1 if uneven and odd + 1 in BASES else odd
     return best if votes[best] else None
 
 
