@@ -261,7 +261,7 @@ def _ends_oddly(row: int, jump_s: float, rows: int) -> bool:
 
 def _rate(times: Array, walked: _Walked, *, quantum_s: float, step_s: float) -> tuple[float, float]:
     """Return frames per second, and what the plain steps of the clock measure; a standard rate where one is near."""
-    believed = np.setdiff1d(np.arange(len(times)), walked.odd)
+    believed = np.delete(np.arange(len(times)), walked.odd)
     frames, steps = np.diff(walked.rows[believed]), np.diff(times[believed])
     broken = np.searchsorted(believed, walked.set_back)
     plain = (
