@@ -114,7 +114,7 @@ class FileActions(QObject):
     def take_in(self, path: Path) -> None:
         """Open or attach a file, by its ending."""
         ending = path.suffix.lower()
-        if livelink_folder.is_one(path) and livelink_folder.table_of(path) != self._session.path:
+        if self._is_another_take(path):
             self.load(path)
         elif ending in media.ENDINGS:
             self._media.attach("audio", path)
@@ -126,6 +126,13 @@ class FileActions(QObject):
             self.capture_dropped.emit(path)
         else:
             self.load(path)
+
+    def _is_another_take(self, path: Path) -> bool:
+        """Whether a file belongs to a take of several files that is not open."""
+        try:
+            return livelink_folder.is_one(path) and livelink_folder.table_of(path) != self._session.path
+        except EngineError:
+            return True  # opening it says what is wrong
 
     def open_take(self) -> None:
         """Choose a file to open."""
