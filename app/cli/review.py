@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
+from app.cli.reading import AUTOMATIC, Fps, ReadSides, sides_of
 from engine.errors import EditError, EngineError
 from engine.quality import KINDS
 
 if TYPE_CHECKING:
+    from engine.formats.reading import Reading
     from engine.quality import Flag
     from engine.review.changes import Change, Comparison
     from engine.review.report import Draw, Review
@@ -33,12 +35,16 @@ def review(
     offset: Annotated[float | None, typer.Option(help="Seconds by which the second take begins later.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the changes and flags as one JSON object.")] = False,
     pictures: Annotated[bool, typer.Option("--pictures/--no-pictures", help="Draw the face at each change.")] = True,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Show what was changed between two takes, or in a project, and by how much."""
+    from engine.formats.reading import Reading
     from engine.review import pairs
 
+    reading = Reading(fps, sides_of(sides))
     if queue is not None:
-        _review_queue(queue, out, pictures=pictures)
+        _review_queue(queue, out, reading, pictures=pictures)
         return
     if before is None:
         raise EditError("There is nothing to review.", "Name two takes, or a project.")
@@ -47,7 +53,7 @@ def review(
     if out is not None and out.suffix.lower() not in (".html", ".htm"):
         raise EditError(f"{out.name} is not a name for a report.", "Use a name that ends in .html.")
     first, second = (None, before) if after is None else (before, after)
-    found = pairs.review(first, second, offset_s=offset)
+    found = pairs.review(first, second, offset_s=offset, reading=reading)
     if out is not None:
         _write(found, out, pictures=pictures)
     if as_json:
@@ -61,10 +67,14 @@ def check(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     fail_on: Annotated[str, typer.Option(help=f"Flags that must not be there: {', '.join(KINDS)}.")] = ",".join(KINDS),
     least: Annotated[float, typer.Option(help="Only flags of at least this weight, 0..1.", min=0, max=1)] = 0.0,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Check takes for a pipeline: exit code 0 where all are fine, 1 where flags were found, 2 where one cannot be read."""
+    from engine.formats.reading import Reading
     from engine.review import pairs
 
+    reading = Reading(fps, sides_of(sides))
     kinds = [kind.strip() for kind in fail_on.split(",") if kind.strip()]
     unknown = [kind for kind in kinds if kind not in KINDS]
     if unknown:
@@ -72,7 +82,7 @@ def check(
     rows, unread = [], 0
     for path in takes:
         try:
-            flags = [flag for flag in pairs.flags(path) if flag.kind in kinds and flag.weight >= least]
+            flags = [flag for flag in pairs.flags(path, reading) if flag.kind in kinds and flag.weight >= least]
             rows.append({"take": str(path), "ok": not flags, "flags": [asdict(flag) for flag in flags]})
         except EngineError as error:
             unread += 1
@@ -92,7 +102,7 @@ def _counted(flags: object) -> str:
     return ", ".join(f"{count} x {KINDS[kind]}" for kind, count in counts.items() if count) or "fine"
 
 
-def _review_queue(folder: Path, out: Path | None, *, pictures: bool) -> None:
+def _review_queue(folder: Path, out: Path | None, reading: Reading, *, pictures: bool) -> None:
     """Write a report of each pair, and a page that lists them; a pair that cannot be read does not stop the others."""
     from engine.formats.atomic import write_bytes
     from engine.review import pairs
@@ -109,7 +119,7 @@ def _review_queue(folder: Path, out: Path | None, *, pictures: bool) -> None:
         errors.print(f"{number} of {len(found)}: {after.name}", style="dim", highlight=False, markup=False)
         target = out / f"{after.stem}.html"
         try:
-            seen = pairs.review(before, after)
+            seen = pairs.review(before, after, reading=reading)
             _write(seen, target, pictures=pictures)
             entries.append(Entry(after.name, target.name, _summary(seen)))
         except EngineError as error:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from engine.errors import EditError
 from engine.formats import FORMATS, read_take
+from engine.formats.reading import Reading
 from engine.project import ENDING, Project, replay
 from engine.quality import Flag, Seen, flags_of, seen_of
 from engine.review.changes import Edited, compare
@@ -15,6 +16,7 @@ from engine.take import Take
 
 BEFORE, AFTER = "before", "after"
 SUFFIXES = ("_after", "_edited", "_clean", "_filled")  # NAME_after.csv is a version of NAME.csv or NAME_before.csv
+AS_IT_IS = Reading()
 QUEUE = 10_000  # pairs; a folder of more is a slip
 
 
@@ -30,12 +32,12 @@ class _Opened:
     edits: tuple[Edited, ...] = ()
 
 
-def review(before: Path | None, after: Path, *, offset_s: float | None = None) -> Review:
-    """Return the review of a file against another, or of a project against its own original.
+def review(before: Path | None, after: Path, *, offset_s: float | None = None, reading: Reading = AS_IT_IS) -> Review:
+    """Return the review of a file against another, or of a project against its own original; `reading` is for takes.
 
     Raises `EngineError` where a file cannot be read, where there is no original, or no frame in common.
     """
-    opened = _open(after)
+    opened = _open(after, reading)
     if before is None and opened.original is None:
         raise EditError(
             f"{after.name} does not hold what it was made from.", "Name the take before its edits, then the one after."
@@ -44,7 +46,7 @@ def review(before: Path | None, after: Path, *, offset_s: float | None = None) -
         assert opened.original is not None
         earlier, seen = opened.original, seen_of(opened.original)
     else:
-        first = _open(before)
+        first = _open(before, reading)
         earlier, seen = first.take, first.seen
     return Review(
         compare(earlier, opened.take, offset_s=offset_s, edits=opened.edits),
@@ -56,9 +58,9 @@ def review(before: Path | None, after: Path, *, offset_s: float | None = None) -
     )
 
 
-def flags(path: Path) -> tuple[Flag, ...]:
+def flags(path: Path, reading: Reading = AS_IT_IS) -> tuple[Flag, ...]:
     """Return the automatic findings of a take, or of a project with its edits."""
-    return flags_of(_open(path).seen)
+    return flags_of(_open(path, reading).seen)
 
 
 def pairs(folder: Path) -> list[tuple[Path, Path]]:
@@ -93,9 +95,9 @@ def pairs(folder: Path) -> list[tuple[Path, Path]]:
     return found
 
 
-def _open(path: Path) -> _Opened:
+def _open(path: Path, reading: Reading) -> _Opened:
     if path.suffix.lower() != ENDING:
-        take = read_take(path)
+        take = read_take(path, reading=reading)
         return _Opened(take, None, seen_of(take))
     project = Project.open(path)
     try:
