@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.performance import MARKER_HELP, pairs, performance_of
+from app.cli.reading import AUTOMATIC, Fps, ReadSides
 from engine.errors import EditError
 
 if TYPE_CHECKING:
@@ -131,6 +132,8 @@ def drive(
     facing: Facing = None,
     still: Annotated[bool, typer.Option("--still", help="For markers: leave the head's own motion out.")] = False,
     marker: Annotated[list[str] | None, typer.Option("--marker", help=MARKER_HELP)] = None,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Move a head that needs no shapes by points on its face; the head turns and goes as the markers do."""
     import numpy as np
@@ -142,7 +145,13 @@ def drive(
     require_ending(out)
     head = _head(mesh, unit=unit, up=up, facing=facing)
     performance = performance_of(
-        markers, neutral=neutral, unit=None, fps=None, changes=pairs(marker or []), placed=points is not None
+        markers,
+        neutral=neutral,
+        unit=None,
+        fps=fps,
+        sides=sides,
+        changes=pairs(marker or []),
+        placed=points is not None,
     )
     performance.show()
     source = performance.source

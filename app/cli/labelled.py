@@ -44,8 +44,7 @@ def retarget(performance: Carried, character: Path | None, labels: Path | None) 
     path = character or asked.target
     target = bundled() if path is None else character_of(path)
     source = performance.source
-    known = source.take.weights.any()
-    guess = source.take if known else carry(source, target, layout=performance.layout(target))
+    guess = carry(source, target, layout=performance.layout(target)) if source.is_capture else source.take
     poses: dict[int, Mapping[str, float] | Array] = dict(asked.labels)
     return without_lacking(retarget_weights(guess, poses, source=_features(source)), target), target
 
@@ -57,9 +56,9 @@ def _read(path: Path) -> LabelFile:
 
 
 def _features(performance: Source) -> Array:
-    """Return what tells frames apart, (frames, D): weights where they are known, else where the markers are."""
+    """Return what tells frames apart, (frames, D): the weights of a take, or where a capture's markers are."""
     from engine.spacetime.source import bridge
 
-    if performance.take.weights.any():
-        return performance.take.weights
-    return bridge(performance.displacements)[0].reshape(len(performance), -1)
+    if performance.is_capture:
+        return bridge(performance.displacements)[0].reshape(len(performance), -1)
+    return performance.take.weights

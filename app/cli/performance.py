@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.reading import open_take
 from engine.errors import EditError
 from engine.formats.content import require_file, unread
 
@@ -59,6 +60,7 @@ def performance_of(
     neutral: int,
     unit: str | None,
     fps: float | None,
+    sides: str,
     changes: dict[str, str] | None = None,
     placed: bool = False,
 ) -> Carried:
@@ -68,19 +70,21 @@ def performance_of(
     ----------
     path : the file
     neutral : for a capture, a frame in which the face is at rest
-    unit, fps : for a capture, instead of what the file says
+    unit : for a capture, instead of what the file says
+    fps : instead of what the file says
+    sides : of a take, as `--sides` has it
     changes : landmarks by marker that were corrected
     placed : whether a landmark file says where the markers are: their names need not be understood then
     """
     from engine.character import bundled
-    from engine.formats import markers, read_take
+    from engine.formats import markers
     from engine.formats.characters.marker_places import match_markers
     from engine.spacetime.source import from_markers, from_take
 
     if path.suffix.lower() not in markers.ENDINGS or is_take(path):
         if changes:
             raise EditError("A take has no markers to correct.", "Leave out --marker.")
-        return Carried(from_take(read_take(path), bundled()))
+        return Carried(from_take(open_take(path, fps, sides), bundled()))
     capture = markers.read(path, unit=unit, fps=fps)
     if not 0 <= neutral < len(capture):
         raise EditError(f"Frame {neutral} is not within the capture, which has {len(capture)} frames.")

@@ -10,6 +10,7 @@ import typer
 
 from app.cli import labelled
 from app.cli.performance import MARKER_HELP, Carried, pairs, performance_of
+from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from engine.errors import EditError
 
 if TYPE_CHECKING:
@@ -40,16 +41,18 @@ def pin(
     closure: Annotated[
         float | None, typer.Option(help="How firmly lips and lids that meet keep meeting; 0 lets go.")
     ] = None,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
+    write_sides: WrittenSides = SAME,
 ) -> None:
     """Pin a pose at a frame and let it spread over a range."""
     from dataclasses import replace
 
     from engine.editing import parse_frames
-    from engine.formats import read_take, write_take
     from engine.spacetime import pin as pins
     from engine.take import SHAPES
 
-    source = read_take(take)
+    source = open_take(take, fps, sides)
     named = assignments(weights)
     if controls:
         if free:
@@ -62,7 +65,7 @@ def pin(
         pins.Spreading() if closure is None else replace(pins.Spreading(), closure=_strength("closure", closure))
     )
     edited = pins.pin(source, {frame: named}, parse_frames(frames, source), whole=not free, spreading=spreading)
-    write_take(edited, out)
+    save_take(edited, out, write_sides)
     print(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
 
 
@@ -80,17 +83,17 @@ def retarget(
     ] = None,
     neutral: Annotated[int, typer.Option(help="For markers: a frame in which the face is at rest.")] = 0,
     unit: Annotated[str | None, typer.Option(help="For markers: mm, cm or m, where the file does not say.")] = None,
-    fps: Annotated[
-        float | None, typer.Option(help="For markers: frames per second, where the file does not say.")
-    ] = None,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
     alpha: Annotated[float | None, typer.Option(help="How much likely poses count.")] = None,
     beta: Annotated[float | None, typer.Option(help="How much places count beside movements.")] = None,
     closure: Annotated[float | None, typer.Option(help="How firmly lips and lids meet where the source's do.")] = None,
     unbounded: Annotated[bool, typer.Option("--unbounded", help="Let weights leave 0..1.")] = False,
+    write_sides: WrittenSides = SAME,
     marker: Annotated[list[str] | None, typer.Option("--marker", help=MARKER_HELP)] = None,
 ) -> None:
     """Carry markers or a take to another character."""
-    from engine.formats import format_of, write_take
+    from engine.formats import format_of
 
     if method is not Method.MANIFOLD and (labels is not None or suggest is not None):
         raise EditError("Labelled frames belong to the other method.", "Add --method manifold.")
@@ -99,7 +102,13 @@ def retarget(
     if out is not None:
         format_of(out)  # an ending that cannot be written is told before the work, not after it
     performance = performance_of(
-        source, neutral=neutral, unit=unit, fps=fps, changes=pairs(marker or []), placed=landmarks is not None
+        source,
+        neutral=neutral,
+        unit=unit,
+        fps=fps,
+        sides=sides,
+        changes=pairs(marker or []),
+        placed=landmarks is not None,
     )
     if suggest is not None:
         print(*labelled.suggest(performance.source, suggest, labels), sep="\n")
@@ -111,7 +120,7 @@ def retarget(
     else:
         matching = _matching(alpha=alpha, beta=beta, closure=closure, unbounded=unbounded)
         made, target = _carried(performance, character, landmarks, matching)
-    write_take(made, out)
+    save_take(made, out, write_sides)
     for notice in made.notices:
         print(notice)
     print(f"Moved {target.name} by {len(made)} frames of {source.name}. Written to {out}.")

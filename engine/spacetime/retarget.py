@@ -185,9 +185,9 @@ def retarget(
     tell : is told the share that is done, 0..1; it may raise, to stop
 
     What no marker tells of (gaze, tongue) is carried over by name where the target has it, and is 0 where it has not; head
-    rotation and lost frames are the source's. Raises `EditError` as `correspond` does.
+    rotation is the source's. Lost frames that move on the target are lost no more. Raises `EditError` as `correspond` does.
     """
     pair = correspond(source, character, layout)
     weights = source.take.weights.copy()
     weights[:, pair.shapes] = match(pair, source.take.fps, matching or Matching(), tell)
-    return without_lacking(replace(source.take, weights=weights, origin=None), character)
+    return without_lacking(replace(source.take, origin=None).with_weights(weights), character)
