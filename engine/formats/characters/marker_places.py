@@ -149,12 +149,12 @@ def match_markers(points: Array, names: Sequence[str]) -> MarkerTable:
 
 
 def _by_name(names: Sequence[str]) -> dict[int, str]:
-    """Return the landmark of each marker that is called like one, by its number; the first of two has it."""
+    """Return the landmark of each marker that is called like one, by its number: its own name before another spelling."""
     plain = {_plain(landmark): landmark for landmark in MARKERS}
-    found: dict[int, str] = {}
+    found = {index: name for index, name in enumerate(names) if name in MARKERS}
     for index, name in enumerate(names):
-        landmark = name if name in MARKERS else plain.get(_plain(name), "")
-        if landmark and landmark not in found.values():
+        landmark = plain.get(_plain(name), "")
+        if landmark and index not in found and landmark not in found.values():
             found[index] = landmark
     return found
 

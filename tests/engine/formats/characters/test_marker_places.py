@@ -52,6 +52,12 @@ def test_names_of_landmarks_are_taken_at_their_word_in_any_spelling() -> None:
     assert {row.how for row in table.rows} == {"by name"}
 
 
+def test_a_landmark_s_own_name_wins_over_another_spelling_of_it() -> None:
+    points = capture(talking(), {own: own for own in MARKERS}).positions[0]
+    table = match_markers(np.concatenate([points[:1] + 30.0, points]), ["Fore Head", *MARKERS])
+    assert [row.landmark for row in table.rows] == ["", *MARKERS]
+
+
 def test_a_capture_with_other_names_moves_the_head_as_one_with_ours() -> None:
     played, turns = (
         talking(),
