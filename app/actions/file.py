@@ -179,11 +179,17 @@ class FileActions(QObject):
     def open_recording(self, take: Take) -> None:
         """Open what was recorded live, unless edits would be lost."""
 
+        self.open_then(take, lambda: None)
+
+    def open_then(self, take: Take, then: Callable[[], None]) -> None:
+        """Open a take that no file holds, unless edits would be lost, and go on."""
+
         def show() -> None:
             self.imported = None
             self._session.open(take, None)
             self._keeper.keep()
             self.opened.emit()
+            then()
 
         self.when_safe(show)
 

@@ -30,6 +30,7 @@ from engine.speech.lane import VisemeLane
 
 if TYPE_CHECKING:
     from engine.editing import Patch
+    from engine.project import Before
     from engine.take import Array
 
 
@@ -57,12 +58,15 @@ class EditCommand(QUndoCommand):
     ) -> None:
         super().__init__(title)
         self._marks = (session.marks, marks) if marks is not None else None
-        rows = slice(patch.start, patch.stop)
+        patch = patch.settled(session.take)
+        assert patch.lost is not None
+        rows, take = slice(patch.start, patch.stop), session.take
         self._session, self._start = session, patch.start
-        self._before = (session.take.weights[rows].copy(), session.controls[rows].copy(), session.asked[rows].copy())
-        asked = np.where(patch.asked != self._before[1], patch.asked, self._before[2])
-        self._after = (patch.weights, patch.reached, asked)
-        self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {})
+        had = session.asked[rows].copy()
+        self._before = (take.weights[rows].copy(), session.controls[rows].copy(), had, take.lost[rows].copy())
+        asked = np.where(patch.asked != self._before[1], patch.asked, had)
+        self._after = (patch.weights, patch.reached, asked, patch.lost)
+        self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {}, patch.lost)
 
     @property
     def asked(self) -> tuple[int, Array] | None:
@@ -78,15 +82,16 @@ class EditCommand(QUndoCommand):
         return self._before[1], self._before[2]
 
     @classmethod
-    def restored(cls, session: Session, edit: Edit, before: tuple[Array, Array]) -> EditCommand:
-        """Return the command of a stored edit, which replaced `before`: (n, 52) weights and (n, 8) asked values."""
+    def restored(cls, session: Session, edit: Edit, before: Before) -> EditCommand:
+        """Return the command of a stored edit, which replaced `before`: (n, 52) weights, (n, 8) asked values, lost frames."""
         command = cls.__new__(cls)
         QUndoCommand.__init__(command, edit.title)
         measure = bundled_measurer().measure
         command._session, command._start, command.edit = session, edit.start, edit
         command._marks = None
-        command._before = (before[0], measure(before[0]), before[1])
-        command._after = (edit.weights, measure(edit.weights), edit.asked)
+        weights, asked, lost = before
+        command._before = (weights, measure(weights), asked, lost)
+        command._after = (edit.weights, measure(edit.weights), edit.asked, edit.still_lost(weights, lost))
         return command
 
     def redo(self) -> None:

@@ -19,8 +19,9 @@ from engine.formats import livelink
 from engine.formats.audio import Audio
 from engine.formats.reading import ReadAs
 from engine.project import Contents, Marks, Replayed, Span
+from engine.project.records import FILL
 from engine.speech.lane import VisemeLane
-from engine.take import Array, Take, runs
+from engine.take import Array, Mask, Take, runs
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -49,6 +50,7 @@ class Change(Flag):
     VISEMES = auto()  # what is said when
     FLAGS = auto()  # what was found automatically
     CHARACTER = auto()  # whose head the weights are for
+    REVIEW = auto()  # where the take differs from the recording
     READING = auto()  # the frame rate, or the sides of mouth and jaw, that the take is read with
 
 
@@ -57,7 +59,7 @@ class Session(QObject):
 
     Attributes
     ----------
-    take : as edited so far
+    take : as edited so far; its lost frames are those that nothing has given motion yet
     recorded : as opened
     original : the same, read as it is read by now
     reading : what that is
@@ -80,6 +82,7 @@ class Session(QObject):
     marks : spans, pins, notes, media and verdict
     visemes : what is said when, or None
     flags : what was found automatically, by the first frame; None while it is looked for
+    differences : half-open ranges of frames that differ from the recording; None while nobody looks
     touched : the half-open range of frames that changed last
     character : whose head the weights are for; None for the bundled one
     """
@@ -109,6 +112,7 @@ class Session(QObject):
         self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
         self.visemes: VisemeLane | None = None
         self.flags: tuple[quality.Flag, ...] | None = None
+        self.differences: tuple[tuple[int, int], ...] | None = None
         self.touched = (0, len(take))
         self.draft: Patch | None = None
         self.selection: tuple[int, int] | None = None
@@ -161,6 +165,17 @@ class Session(QObject):
         kept = tuple(edit for edit in edits if edit is not None)
         return Contents(self.recorded, kept, len(kept) - undone, self.marks)
 
+    @property
+    def filled(self) -> Mask:
+        """Which frames, (frames,) bool, fills in effect have made."""
+        filled = np.zeros(len(self.take), bool)
+        contents = self.contents()
+        for edit in contents.edits[: contents.position]:
+            if edit.kind == FILL:
+                start, stop = edit.inputs.get("frames", (edit.start, edit.stop))
+                filled[start:stop] = True
+        return filled
+
     def set_marks(self, marks: Marks) -> None:
         """Put other spans, pins, notes, media or another verdict in place."""
         if marks != self.marks:
@@ -192,6 +207,12 @@ class Session(QObject):
         """Show what was found automatically."""
         self.flags = flags
         self.changed.emit(Change.FLAGS)
+
+    def set_differences(self, ranges: tuple[tuple[int, int], ...] | None) -> None:
+        """Show where the take differs from the recording, or no longer."""
+        if ranges != self.differences:
+            self.differences = ranges
+            self.changed.emit(Change.REVIEW)
 
     def play_on(self, character: Character | None) -> None:
         """Say whose head the weights are for; None is the bundled one."""
@@ -258,12 +279,12 @@ class Session(QObject):
             return float(drafted[frame - draft.start])
         return float(self.curve(lane)[frame])
 
-    def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array) -> None:
-        """Put rows of weights, controls and asked values in place; for commands only."""
+    def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array, lost: Mask) -> None:
+        """Put rows of weights, controls, asked values and lost frames in place; for commands only."""
         if self._restoring:
             return  # what the steps come to is known
         stop = start + len(weights)
-        self.take = self.take.with_rows(start, weights)
+        self.take = self.take.with_exact_rows(start, weights, lost)
         self.controls = _with_rows(self.controls, start, controls)
         self.asked = _with_rows(self.asked, start, asked)
         self.draft = None

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from engine.formats.livelink_origin import lost_frames
 from engine.formats.livelink_timecode import LONGEST_STEP_S, SHORTEST_STEP_S, Style, read_times
-from engine.take import Array, Mask
+from engine.take import Array, Mask, runs
 
 STANDARD_FPS = (
     *(15.0, 20.0, 24000 / 1001, 24.0, 25.0, 30000 / 1001, 30.0, 48.0, 50.0),
@@ -48,6 +49,7 @@ class Clock:
     missed : frames between rows that the clock counts and the file lacks
     odd : rows whose timecode was not believed
     notices : what the user should hear
+    told_fps : the rate that the timecodes tell, where another is taken in its place
     """
 
     fps: float
@@ -58,6 +60,12 @@ class Clock:
     missed: int = 0
     odd: int = 0
     notices: tuple[str, ...] = field(default=())
+    told_fps: float | None = None
+
+    @property
+    def file_fps(self) -> float:
+        """Frames per second by the timecodes, whatever is taken in place of it."""
+        return self.told_fps or self.fps
 
 
 def clock_of(timecodes: Sequence[bytes], fps: float | None = None) -> Clock:
@@ -69,7 +77,9 @@ def clock_of(timecodes: Sequence[bytes], fps: float | None = None) -> Clock:
         f"; the timecodes say {found.fps:.6g}." if found.style is not None and len(timecodes) > 1 else "."
     )
     kept = [notice for notice in found.notices if not notice.startswith(("The timecodes make", "One frame", "Taken"))]
-    return Clock(fps, found.rows, found.start_s, "as asked", found.style, found.missed, found.odd, (said, *kept))
+    return Clock(
+        fps, found.rows, found.start_s, "as asked", found.style, found.missed, found.odd, (said, *kept), found.fps
+    )
 
 
 def _alone(timecodes: Sequence[bytes]) -> Clock:
@@ -105,7 +115,7 @@ def _believed(timecodes: Sequence[bytes]) -> Clock:
     missed = int(walked.rows[-1]) + 1 - len(times)
     reason = f"from {style.described}"
     odd = len(set(walked.odd) | set(np.flatnonzero(unread).tolist()))
-    notices = [*_said_rate(style, rate, measured, quantum_s), *_said_odd(odd, walked), *_said_missed(missed)]
+    notices = [*_said_rate(style, rate, measured, quantum_s), *_said_odd(odd, walked), *_said_missed(walked.rows, rate)]
     first = next(row for row in range(len(times)) if row not in walked.odd)
     start_s = float(times[first] - walked.rows[first] / rate) % style.day_s
     return Clock(rate, walked.rows, start_s, reason, style, missed, odd, tuple(notices))
@@ -123,7 +133,7 @@ def _numbered(numbers: Array, style: Style) -> Clock:
     rows = (numbers - numbers[0]).astype(np.int64) if rising else np.arange(len(numbers))
     missed = int(rows[-1]) + 1 - len(rows)
     notice = f"The rows are numbered, not timed: taken as {FALLBACK_FPS:g} fps. {ADVICE}"
-    return Clock(FALLBACK_FPS, rows, 0.0, "assumed", style, missed, 0, (notice, *_said_missed(missed)))
+    return Clock(FALLBACK_FPS, rows, 0.0, "assumed", style, missed, 0, (notice, *_said_missed(rows, FALLBACK_FPS)))
 
 
 def _unbroken(times: Array, day_s: float) -> tuple[Array, Mask]:
@@ -306,8 +316,22 @@ def _said_odd(odd: int, walked: _Walked) -> list[str]:
     return said
 
 
-def _said_missed(missed: int) -> list[str]:
-    return [f"{missed} missed frames were filled in by interpolation."] if missed else []
+def _said_missed(rows: npt.NDArray[np.int64], fps: float) -> list[str]:
+    """Say what became of frames without a row: a few are interpolated, long gaps are lost."""
+    gone = lost_frames(rows, np.zeros(len(rows), bool), fps)
+    missed, lost = int(rows[-1]) + 1 - len(rows) - int(gone.sum()), int(gone.sum())
+    said = []
+    if missed:
+        said.append(
+            "1 missed frame was filled in by interpolation."
+            if missed == 1
+            else f"{missed} missed frames were filled in by interpolation."
+        )
+    if lost:
+        gaps = len(runs(gone))
+        where = "a gap" if gaps == 1 else f"{gaps} gaps"
+        said.append(f"The file has no rows over {where} of {lost / fps:.2g} s; such frames are marked as lost.")
+    return said
 
 
 def timecodes_between(

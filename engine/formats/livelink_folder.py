@@ -136,7 +136,7 @@ def _read_zip(path: Path, report: Callable[[float], None] | None, reading: Readi
         content = _member(archive, parts.table, path, at_most=MAX_TABLE_BYTES)
         written = _member(archive, parts.card, path, at_most=MAX_CARD_BYTES) if parts.card is not None else None
     name = Path(_path(parts.table).name)
-    take = livelink.parse(content.removeprefix(b"\xef\xbb\xbf"), name, report, reading)
+    take = livelink.parse(content, name, report, reading)
     return _checked(take, parts, _rate_in(written), reading)
 
 

@@ -18,7 +18,7 @@ from engine.project.records import (
     read_as_of,
     reading_edit,
 )
-from engine.project.replaying import Replayed, replay
+from engine.project.replaying import Before, Replayed, replay
 from engine.project.store import ENDING, InUseError, Project, create, delete, peek
 from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
@@ -27,6 +27,7 @@ __all__ = [
     "MARK",
     "READING",
     "VISEMES",
+    "Before",
     "Contents",
     "Edit",
     "Found",
