@@ -201,7 +201,7 @@ class Session(QObject):
         self.draft = None
         self.touched = (0, len(self.take))
         told = Change.READING | Change.CURVES | Change.DRAFT | Change.VIEW | Change.MARKS | Change.MEDIA
-        self.changed.emit(told | Change.VISEMES | Change.PLAYHEAD | Change.SELECTION)
+        self.changed.emit(told | Change.VISEMES | Change.SELECTION)
 
     def set_flags(self, flags: tuple[quality.Flag, ...]) -> None:
         """Show what was found automatically."""
