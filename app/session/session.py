@@ -19,7 +19,6 @@ from engine.formats import livelink
 from engine.formats.audio import Audio
 from engine.formats.reading import ReadAs
 from engine.project import Contents, Marks, Replayed, Span
-from engine.project.records import FILL
 from engine.speech.lane import VisemeLane
 from engine.take import Array, Mask, Take, runs
 
@@ -164,17 +163,6 @@ class Session(QObject):
         undone = sum(edit is not None for edit in edits[self.undo.index() :])
         kept = tuple(edit for edit in edits if edit is not None)
         return Contents(self.recorded, kept, len(kept) - undone, self.marks)
-
-    @property
-    def filled(self) -> Mask:
-        """Which frames, (frames,) bool, fills in effect have made."""
-        filled = np.zeros(len(self.take), bool)
-        contents = self.contents()
-        for edit in contents.edits[: contents.position]:
-            if edit.kind == FILL:
-                start, stop = edit.inputs.get("frames", (edit.start, edit.stop))
-                filled[start:stop] = True
-        return filled
 
     def set_marks(self, marks: Marks) -> None:
         """Put other spans, pins, notes, media or another verdict in place."""
