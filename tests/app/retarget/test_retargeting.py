@@ -112,7 +112,7 @@ def test_a_project_that_is_opened_again_shows_the_head_it_was_kept_on(
     session.open(contents.original, None)
     assert session.character is None
     state = replay(contents)
-    aimed.retargeting._heads = {"": None}  # as in a program that was just started
+    aimed.retargeting._kept_heads.forget()  # as in a program that was just started
     measured = tuple(bundled_measurer().measure(take.weights) for take in (contents.original, state.take))
     session.restore(contents, None, restored(session, contents, state), state, measured)
     qtbot.waitUntil(lambda: session.character is not None, timeout=20_000)
