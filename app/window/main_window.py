@@ -25,8 +25,8 @@ from app.actions.settings import SettingsActions
 from app.actions.time import TimeActions
 from app.actions.viseme import VisemeActions
 from app.clean.section import CleanSection
-from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
+from app.curves.places import GUTTER_PX
 from app.curves.tools import TOOLS
 from app.inspector.brush import BrushSection
 from app.inspector.facts import FactsSection

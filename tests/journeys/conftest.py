@@ -65,7 +65,7 @@ def settled(qtbot: QtBot, window: MainWindow) -> None:
 
     def nothing_left() -> bool:
         drawn = window.preview.drawing.idle and not window.preview._still.isActive()
-        return window.inference.idle and drawn and window.flagging.idle
+        return window.inference.idle and drawn and window.flagging.idle and not window.curves.moving
 
     qtbot.waitUntil(nothing_left, timeout=30_000)
     qtbot.wait(20)  # results that were finished are still on their way to this thread

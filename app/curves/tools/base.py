@@ -46,6 +46,9 @@ class Tool:
             self.panel.show_dot(None)
             self.panel.show_readout("", QPointF())
 
+    def placed(self) -> None:
+        """Follow lanes that are at other places, or show other frames."""
+
     def wheel(self, notches: float) -> None:
         """Change the tool's size."""
 

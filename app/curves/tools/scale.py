@@ -97,6 +97,10 @@ class ScaleTool(Tool):
         super().leave()
         self._show_box()
 
+    def placed(self) -> None:
+        """Let the box follow what it is around."""
+        self._show_box()
+
     def _hover(self, lane: int | None, at: QPointF) -> None:
         handle = self._handle_at(at)
         shapes = {"value": Qt.CursorShape.SizeVerCursor, "time": Qt.CursorShape.SizeHorCursor}
