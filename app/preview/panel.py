@@ -9,7 +9,6 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import (
-    QButtonGroup,
     QComboBox,
     QFrame,
     QHBoxLayout,
@@ -186,14 +185,14 @@ class PreviewPanel(QFrame):
     def _lay_out(self) -> None:
         row = QHBoxLayout()
         row.setSpacing(2)
-        self._views = QButtonGroup(self)
+        self.views: dict[str, QToolButton] = {}  # by name; Tab would reach but one of a QButtonGroup
         for name in VIEWS:
             button = QToolButton()
             button.setText(name)
             button.setCheckable(True)
             button.setProperty("segment", True)
             button.setToolTip(f"Show {name.lower()} (hold B to see the original)")
-            self._views.addButton(button)
+            self.views[name] = button
             row.addWidget(button)
             button.setChecked(name == self.face.view)
             button.clicked.connect(lambda _=False, chosen=name: self.show_view(chosen))
@@ -222,8 +221,8 @@ class PreviewPanel(QFrame):
     def show_view(self, name: str) -> None:
         """Show before, after, split or difference."""
         self.face.view = name
-        for button in self._views.buttons():
-            button.setChecked(button.text() == name)
+        for view, button in self.views.items():
+            button.setChecked(view == name)
         self.refresh()
 
     def look_from(self, name: str) -> None:
@@ -264,7 +263,7 @@ class PreviewPanel(QFrame):
     def show_sides(self, sides: tuple[Side, ...]) -> None:
         """Show these side by side in place of the take; none goes back to it."""
         self._sides = sides
-        for button in self._views.buttons():
+        for button in self.views.values():
             button.setEnabled(not sides)
         self._widen(wide=len(sides) > 1)
         self.refresh()

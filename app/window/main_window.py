@@ -51,6 +51,7 @@ from app.spans.filling import Filling
 from app.spans.section import SpansSection
 from app.theme import GRID
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
+from app.window.focus import Focus
 from app.window.keyboard import Keyboard
 from app.window.missing import MissingMedia
 from app.window.notices import Notices
@@ -137,6 +138,8 @@ class MainWindow(QMainWindow):
     def _do(self, name: str) -> None:
         owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.retarget, self.preferences)
         owner = next(each for each in owners if name in type(each).__dict__)
+        if name != "cancel":  # which would keep what is half typed
+            self._focus.give_back()
         getattr(owner, name)()
 
     def _lay_out(self) -> None:
@@ -233,6 +236,8 @@ class MainWindow(QMainWindow):
         self._show_missing()
         self._show_filling()
         self._keyboard = Keyboard(self, self.preview)
+        self._focus = Focus(self, self.centralWidget(), self.curves, (self.timeline, self.preview.face))
+        self._focus.give_back()
 
     def _connect_media(self) -> None:
         self.media.missing_changed.connect(self._show_missing)
@@ -244,10 +249,13 @@ class MainWindow(QMainWindow):
         self.attached.moved.connect(self.media.move)
         self.timeline.slid.connect(self.media.settle)
 
+    def focusNextPrevChild(self, onwards: bool) -> bool:
+        """Go through what can be seen as the eye does."""
+        return self._focus.step(onwards)
+
     def showEvent(self, event: QShowEvent) -> None:
         """Load the networks once the window can be seen."""
         super().showEvent(event)
-        self.curves.setFocus()
         QTimer.singleShot(0, self.inference.warm_up)
 
     # --- opening and closing
@@ -296,6 +304,7 @@ class MainWindow(QMainWindow):
     def shut_down(self) -> None:
         """End the threads; the window cannot be used after."""
         self._keyboard.let_go()
+        self._focus.let_go()
         self.transport.run(0.0)
         self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.files.opening.close()
