@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
@@ -55,6 +56,7 @@ from app.window.focus import Focus
 from app.window.keyboard import Keyboard
 from app.window.missing import MissingMedia
 from app.window.notices import Notices
+from app.window.screen import DESIGNED, stay_on_screen
 from app.window.status import StatusBar
 from engine.take import Take
 
@@ -129,7 +131,7 @@ class MainWindow(QMainWindow):
         self._lay_out()
         self._connect()
         self.preferences.apply_all()
-        self.resize(1440, 900)
+        self.resize(DESIGNED.boundedTo(self.screen().availableSize()))
         self.session.open(take, path)
         self._show_opened()
 
@@ -257,6 +259,7 @@ class MainWindow(QMainWindow):
         """Load the networks once the window can be seen."""
         super().showEvent(event)
         QTimer.singleShot(0, self.inference.warm_up)
+        QTimer.singleShot(0, partial(stay_on_screen, self))  # the desktop has drawn its frame by then
 
     # --- opening and closing
 

@@ -11,6 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from app.settings import Settings
 from app.window.main_window import MainWindow
+from app.window.screen import DESIGNED
 from engine.formats import read_take
 from engine.performance import demo
 
@@ -23,6 +24,7 @@ def window(qtbot: QtBot, tmp_path: Path) -> Iterator[MainWindow]:
     )
     with qtbot.waitSignals([opened.inference.ready, opened.preview.drawing.done], timeout=60_000):
         opened.show()
+    opened.resize(DESIGNED)  # the offscreen screen is smaller
     settled(qtbot, opened)
     yield opened
     opened.session.undo.setClean()
