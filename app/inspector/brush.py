@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QCheckBox, QDoubleSpinBox, QSpinBox
 from app.session import RADII_S, Change, Session
 from app.widgets.section import Section, slider
 
-
 STEP_S, SLIDER_STEPS = 0.02, 150  # of the slider: to three seconds, further by typing
 
 
@@ -62,10 +61,11 @@ class BrushSection(Section):
             self._show()
 
     def _show(self) -> None:
-        radius, percent = self.session.radius_s, round(100 * self.session.strength)
+        radius_s, percent = self.session.radius_s, round(100 * self.session.strength)
+        with QSignalBlocker(self.radius):
+            self.radius.setValue(radius_s)
         for widget, value in (
-            (self.radius, radius),
-            (self._radius_slider, round(radius / STEP_S)),
+            (self._radius_slider, round(radius_s / STEP_S)),
             (self.strength, percent),
             (self._strength_slider, percent),
         ):

@@ -69,12 +69,14 @@ class FactsSection(Section):
             if draft.asked is draft.reached:
                 return []  # nothing was asked of a control
             before = session.controls[rows], session.asked[rows]
-            return _told(draft.weights, draft.asked, *before, session.exact, session.playhead - draft.start)
+            return _told(
+                draft.weights, draft.asked, *before, exact=session.exact, frames=(draft.start, session.playhead)
+            )
         if step is None or step.asked is None:
             return []
         start, asked = step.asked
         exact = bool(step.edit.inputs.get("exact"))
-        return _told(step.edit.weights, asked, *step.before, exact, session.playhead - start)
+        return _told(step.edit.weights, asked, *step.before, exact=exact, frames=(start, session.playhead))
 
     def _counts(self) -> str:
         session, draft, frames = self.session, self.session.draft, len(self.session.take)
@@ -88,13 +90,16 @@ class FactsSection(Section):
         return f"{moved:,} of {frames:,} frames changed, the rest is as recorded, bit for bit.\n{LEGEND}"
 
 
-def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, exact: bool, playhead: int) -> list[str]:
+def _told(
+    weights: Array, asked: Array, controls: Array, asked_before: Array, *, exact: bool, frames: tuple[int, int]
+) -> list[str]:
     """Return a line for each control that an edit asked for: (n, 52) weights, (n, 8) mm asked and there before.
 
-    It tells of the row at the playhead, whose face and values are on the screen; where nothing was asked there, of the
-    row that was asked for most. What a row on the way there misses is no answer to what was asked.
+    `frames` are the first row's and the playhead's. It tells of the row at the playhead, whose face and values are on
+    the screen; where nothing was asked there, of the row that was asked for most, and names its frame. What a row on
+    the way there misses is no answer to what was asked.
     """
-    changed = asked != controls
+    changed, playhead = asked != controls, frames[1] - frames[0]
     lines = []
     for lane in np.flatnonzero(changed.any(axis=0)).tolist():
         here = 0 <= playhead < len(asked) and changed[playhead, lane]
@@ -103,5 +108,6 @@ def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, ex
         found = shortfalls(weights[row : row + 1], wanted, bundled_measurer(), exact_curve=exact)
         short = next((str(each) for each in found if each.control == lane), "")
         reached = bundled_measurer().measure(weights[row : row + 1])[0, lane]
-        lines.append(short or f"{CURVES[lane].title} {reached:.1f} mm of {asked[row, lane]:.1f} asked")
+        met = f"{CURVES[lane].title} {reached:.1f} mm of {asked[row, lane]:.1f} asked"
+        lines.append(f"{short or met}{'' if here else f' (frame {frames[0] + row:,})'}")
     return lines

@@ -253,6 +253,7 @@ class PreviewPanel(QFrame):
         head = (self._sides[0].head if self._sides else self._character) or bundled()
         at = {point: head.neutral[vertex].astype(float) for point, vertex in head.landmarks.items()}
         self.face.camera = looking(name, at, *framed(head))
+        self.presets.setCurrentText(name)
         self.refresh(moving=False)
 
     def show_character(self, character: Character | None) -> None:

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QLabel,
     QLayout,
     QLineEdit,
+    QMainWindow,
     QMenuBar,
     QPlainTextEdit,
     QScrollArea,
@@ -35,20 +36,21 @@ def is_entry(widget: QWidget) -> bool:
     return chosen or isinstance(widget, ENTRIES)
 
 
-def by_eye(widget: QWidget) -> Iterator[QWidget]:
+def by_eye(widget: QWidget | None) -> Iterator[QWidget]:
     """Yield what Tab reaches in a widget, itself included, in the order of its layouts: from the left, from the top."""
-    if not widget.isVisible():
+    if widget is None or not widget.isVisible():
         return
     reached = widget.focusPolicy() & Qt.FocusPolicy.TabFocus and widget.isEnabled() and widget.focusProxy() is None
     if reached:
         yield widget
-    if isinstance(widget, QScrollArea) and widget.widget() is not None:
+    layout = widget.layout()
+    if isinstance(widget, QScrollArea):
         yield from by_eye(widget.widget())
     elif isinstance(widget, QSplitter):
         for index in range(widget.count()):
             yield from by_eye(widget.widget(index))
-    elif widget.layout() is not None and not reached:
-        yield from _in_layout(widget.layout())
+    elif layout is not None and not reached:
+        yield from _in_layout(layout)
 
 
 def _in_layout(layout: QLayout) -> Iterator[QWidget]:
@@ -69,13 +71,14 @@ class Focus(QObject):
     Parameters
     ----------
     window : whose keys
-    root : holds all that Tab goes through
     lanes : what the keys go to
     canvases : take the keys themselves when they are pressed
     """
 
-    def __init__(self, window: QWidget, root: QWidget, lanes: QWidget, canvases: Sequence[QWidget]) -> None:
+    def __init__(self, window: QMainWindow, lanes: QWidget, canvases: Sequence[QWidget]) -> None:
         super().__init__(window)
+        root = window.centralWidget()
+        assert root is not None
         self._window, self._root, self._lanes = window, root, lanes
         self._canvases = tuple(canvases)
         for canvas in canvases:

@@ -238,7 +238,7 @@ class MainWindow(QMainWindow):
         self._show_missing()
         self._show_filling()
         self._keyboard = Keyboard(self, self.preview)
-        self._focus = Focus(self, self.centralWidget(), self.curves, (self.timeline, self.preview.face))
+        self._focus = Focus(self, self.curves, (self.timeline, self.preview.face))
         self._focus.give_back()
 
     def _connect_media(self) -> None:

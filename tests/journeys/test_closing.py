@@ -44,9 +44,10 @@ def test_what_is_said_follows_the_playhead(qtbot: QtBot, window: MainWindow) -> 
     close(qtbot, window, EYE, 100)
     session = window.session
     session.move_playhead(102)
-    assert f"{session.controls[102, EYE]:.1f} mm of {session.asked[102, EYE]:.1f} asked" in window.facts.told.text()
+    asked = session.asked[102, EYE]
+    assert window.facts.told.text() == f"{CONTROLS[EYE].title} {session.controls[102, EYE]:.1f} mm of {asked:.1f} asked"
     session.move_playhead(250)
-    assert f"{session.controls[100, EYE]:.1f} mm of 0.0 asked" in window.facts.told.text()
+    assert f"{session.controls[100, EYE]:.1f} mm of 0.0 asked (frame 100)" in window.facts.told.text()
 
 
 def test_lips_close_over_the_brush(qtbot: QtBot, window: MainWindow) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QSplitter
 from pytestqt.qtbot import QtBot
 
 from app.curves.places import GUTTER_PX
@@ -46,44 +46,32 @@ def assert_lanes_keep_their_places(window: MainWindow) -> None:
     assert not any(curves._made[key].view.isVisible() for key in hidden)
 
 
-def do_something(window: MainWindow, rng: random.Random) -> str:
-    session = window.session
-    what = rng.choice(
-        ["expand", "name", "zoom", "pan", "split", "theme", "scale", "resize", "lane", "tool", "inspector"]
-    )
-    if what == "expand":
-        session.expand(rng.randrange(FIRST_WEIGHT))
-    elif what == "name":
-        QTest.mouseClick(window.curves.viewport(), LEFT, PLAIN, name_of(window, rng.choice(session.lanes)))
-    elif what == "zoom":
-        session.zoom_view(rng.choice([0.4, 0.7, 1.5, 4.0]), rng.uniform(*session.view))
-    elif what == "pan":
-        first = rng.uniform(0, len(session.take))
-        session.set_view(first, first + rng.uniform(8, 200))
-    elif what == "split":
-        window.curves.parentWidget()
-        split = window.preview.parentWidget()
-        split.setSizes([rng.randint(200, 900), rng.randint(200, 900)])
-    elif what == "theme":
-        window.actions_by_name["light_theme"].trigger()
-    elif what == "scale":
-        QApplication.sendEvent(window.curves, QEvent(QEvent.Type.DevicePixelRatioChange))
-    elif what == "resize":
-        window.resize(rng.randint(1050, 1900), rng.randint(500, 1200))
-    elif what == "lane":
-        session.choose_lane(rng.choice(session.lanes))
-    elif what == "tool":
-        session.choose_tool(rng.choice(["drag", "clean", "pin", "retarget"]))
-    else:
-        window.inspector.setVisible(not window.inspector.isVisible())
-    return what
+def do_something(window: MainWindow, rng: random.Random) -> None:
+    session, split = window.session, window.preview.parentWidget()
+    assert isinstance(split, QSplitter)
+    first = rng.uniform(0, len(session.take))
+    rng.choice(
+        (
+            lambda: session.expand(rng.randrange(FIRST_WEIGHT)),
+            lambda: QTest.mouseClick(window.curves.viewport(), LEFT, PLAIN, name_of(window, rng.choice(session.lanes))),
+            lambda: session.zoom_view(rng.choice([0.4, 0.7, 1.5, 4.0]), rng.uniform(*session.view)),
+            lambda: session.set_view(first, first + rng.uniform(8, 200)),
+            lambda: split.setSizes([rng.randint(200, 900), rng.randint(200, 900)]),
+            window.actions_by_name["light_theme"].trigger,
+            lambda: QApplication.sendEvent(window.curves, QEvent(QEvent.Type.DevicePixelRatioChange)),
+            lambda: window.resize(rng.randint(1050, 1900), rng.randint(500, 1200)),
+            lambda: session.choose_lane(rng.choice(session.lanes)),
+            lambda: session.choose_tool(rng.choice(["drag", "clean", "pin", "retarget"])),
+            lambda: window.inspector.setVisible(not window.inspector.isVisible()),
+        )
+    )()
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_lanes_keep_their_width_whatever_is_done_in_whatever_order(qtbot: QtBot, window: MainWindow, seed: int) -> None:
-    rng, done = random.Random(seed), []
+    rng = random.Random(seed)
     for _ in range(STEPS):
-        done.append(do_something(window, rng))
+        do_something(window, rng)
         QApplication.processEvents()
         qtbot.waitUntil(lambda: not window.curves.moving, timeout=5_000)
         assert_lanes_keep_their_places(window)

@@ -9,7 +9,6 @@ from app.curves.brush import pulled, reach
 from app.curves.tools.base import FINE, Stroke
 from app.session.curve_table import CURVES
 
-
 WHEEL_STEP = 1.15  # the radius grows by a notch
 
 

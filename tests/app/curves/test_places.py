@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import itertools
+
 from hypothesis import given
 from hypothesis import strategies as st
 from PySide6.QtCore import QSizeF
@@ -22,7 +24,7 @@ def test_lanes_are_as_wide_as_the_panel_lets_them_and_fill_its_height(
     assert {box.left() for box in found} == {GUTTER_PX}
     assert {box.width() for box in found} == {max(1.0, int(width) - GUTTER_PX - GRID)}
     assert all(box.height() >= 1 and box.top() == int(box.top()) for box in found)
-    for above, below in zip(found, found[1:], strict=False):
+    for above, below in itertools.pairwise(found):
         assert GAP_PX - 1 <= below.top() - above.bottom() <= GAP_PX
     room = height - GAP_PX * (len(keys) - 1)
     if room > 10 * len(keys):
