@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from functools import partial
+
 import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QFocusEvent, QMouseEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QLabel
 
+from app.curves.drawing import draw_edits, draw_removed, show_frames, take_curves
 from app.curves.lane import Lane
 from app.curves.overlay import FocusRing, Playhead, Underlay
-from app.curves.peaks import on_screen
 from app.curves.places import GUTTER_PX, Growth, boxes
 from app.curves.tools import make_tools
 from app.curves.tools.base import Tool
@@ -94,12 +97,14 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         for cause, step in (
             (kinds.TAKE | kinds.LANES, self._let_go),
             (kinds.TAKE | kinds.LANES, self._lay_lanes),
-            (kinds.TAKE | kinds.LANES | kinds.CURVES, self._take_curves),
-            (kinds.TAKE | kinds.LANES | kinds.CURVES, self._fit_values),
+            (kinds.TAKE | kinds.LANES | kinds.CURVES, partial(self._draw, take_curves)),
             (kinds.TAKE | kinds.LANES | kinds.LANE, self._arrange),
-            (kinds.TAKE | kinds.LANES | kinds.VIEW, self._show_frames),
-            (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT, self._draw_edits),
-            (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT | kinds.TOOL, self._draw_removed),
+            (kinds.TAKE | kinds.LANES | kinds.VIEW, partial(self._draw, show_frames)),
+            (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT, partial(self._draw, draw_edits)),
+            (
+                kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT | kinds.TOOL,
+                partial(self._draw, draw_removed),
+            ),
             (kinds.TAKE | kinds.LANES | kinds.PLAYHEAD | kinds.CURVES | kinds.DRAFT, self._show_playhead),
             (kinds.LANES | kinds.CURVES | kinds.DRAFT, self.tool.leave),  # what it showed is not there any more
             (kinds.DRAFT, self.tool.refresh),
@@ -109,6 +114,9 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         ):
             if change & cause:
                 step()
+
+    def _draw(self, step: Callable[[Sequence[Lane], Session], None]) -> None:
+        step(self.lanes, self.session)
 
     def _show_marks(self) -> None:
         self._underlay.selection = self.session.selection
@@ -161,19 +169,6 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         """Let what the tool shows be where the lanes are."""
         self.tool.placed()
 
-    def _take_curves(self) -> None:
-        for lane in self.lanes:
-            lane.take_curves(
-                self.session.original_curve(lane.key),
-                self.session.curve(lane.key),
-                self.session.asked_curve(lane.key),
-                touched=self.session.touched,
-            )
-
-    def _fit_values(self) -> None:
-        for lane in self.lanes:
-            lane.fit()
-
     def _arrange(self) -> None:
         keys, active = [lane.key for lane in self.lanes], self.session.lane
         for lane in self.lanes:
@@ -183,36 +178,6 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self._ring.moved()
         self._growth.choose(keys, active, at_once=not self.isVisible())
         self.setMinimumHeight(MIN_LANE_PX * len(self.lanes))
-
-    def _show_frames(self) -> None:
-        start, stop = on_screen(len(self.session.take), self.session.view)
-        for lane in self.lanes:
-            lane.show_frames(*self.session.view)
-            lane.draw_original((start, stop))
-
-    def _draw_edits(self) -> None:
-        session, draft = self.session, self.session.draft
-        start, stop = on_screen(len(session.take), session.view)
-        for lane in self.lanes:
-            drafted = session.draft_curve(lane.key)
-            if draft is None or drafted is None:
-                lane.draw_edit((start, stop))
-            else:
-                asked = None if lane.curve.is_weight else (draft.asked[:, lane.curve.column], draft.start)
-                lane.draw_edit((start, stop), (drafted, draft.start), asked)
-
-    def _draw_removed(self) -> None:
-        session, draft = self.session, self.session.draft
-        wanted = session.tool == "clean" and session.shows_removed
-        visible = on_screen(len(session.take), session.view)
-        for lane in self.lanes:
-            drafted = session.draft_curve(lane.key) if wanted else None
-            if draft is None or drafted is None:
-                lane.hide_removed()
-                continue
-            rows = slice(draft.start, draft.stop)
-            kept = ~session.take.lost[rows]
-            lane.draw_removed(session.curve(lane.key)[rows] - drafted, draft.start, kept=kept, visible=visible)
 
     def _show_playhead(self) -> None:
         frame = self.session.playhead
@@ -354,9 +319,8 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         super().resizeEvent(event)
         if event is not None:  # pyqtgraph sends none while it is built
             self._place()
-            self._show_frames()
-            self._draw_edits()
-            self._draw_removed()
+            for step in (show_frames, draw_edits, draw_removed):
+                self._draw(step)
 
     def focusInEvent(self, event: QFocusEvent) -> None:
         """Show where the keys go."""
