@@ -22,9 +22,9 @@ from PySide6.QtWidgets import (
 
 from app.preview.camera import PRESETS, Camera, looking
 from app.preview.kept import KeptPictures
-from app.preview.overlay import Overlay
+from app.preview.overlay import Overlay, draw_scale
 from app.preview.picking import vertex_under
-from app.preview.renderer import GROUND, HEAT, HEAT_FULL_MM, Picture, Shot, framed
+from app.preview.renderer import GROUND, Picture, Shot, framed
 from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
 from app.session.inference import Inference
@@ -95,7 +95,7 @@ class Face(QWidget):
             painter.drawText(GRID, 18, "before")
             painter.drawText(middle + GRID, 18, "after")
         elif self.pictured == "Difference":
-            self._draw_scale(painter)
+            draw_scale(painter, self.height())
 
     def picture_box(self) -> QRectF:
         """Return where the picture is: everywhere; one of another format in its own, until the next one comes."""
@@ -114,16 +114,6 @@ class Face(QWidget):
         """Ask for a picture of the new size."""
         super().resizeEvent(event)
         self.resized.emit()
-
-    def _draw_scale(self, painter: QPainter) -> None:
-        left, top, width, height = GRID, self.height() - 34, 160, 8
-        steps = 40
-        for index in range(steps):
-            at = index / (steps - 1) * (len(HEAT) - 1)
-            colour = [int(np.interp(at, np.arange(len(HEAT)), channel)) for channel in HEAT.T]
-            painter.fillRect(QRectF(left + index * width / steps, top, width / steps + 1, height), QColor(*colour))
-        painter.drawText(left, top + 22, "0")
-        painter.drawText(left + width - 44, top + 22, f"{HEAT_FULL_MM:.0f} mm +")
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Take hold of the camera."""

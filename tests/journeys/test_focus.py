@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QCheckBox, QPushBut
 from pytestqt.qtbot import QtBot
 
 from app.curves.tools import TOOLS
+from app.theme import LIGHT
 from app.window.focus import by_eye
 from app.window.main_window import MainWindow
 from engine.project import Media
@@ -125,6 +126,21 @@ def assert_tab_follows_the_eye(window: MainWindow) -> None:
     for previous in reversed(visited):
         QTest.keyClick(QApplication.focusWidget(), Key.Key_Backtab, Qt.KeyboardModifier.ShiftModifier)
         assert QApplication.focusWidget() is previous
+
+
+def test_whatever_has_the_keys_shows_it(window: MainWindow) -> None:
+    seen: set[QWidget] = set()
+    for theme, tool in itertools.product(("dark", "light"), TOOLS):
+        if (window.colours is LIGHT) != (theme == "light"):
+            window.actions_by_name["light_theme"].trigger()
+            seen.clear()
+        window.actions_by_name[f"{tool}_tool"].trigger()
+        for widget in [each for each in reached(window) if each not in seen]:
+            seen.add(widget)
+            window.timeline.setFocus()
+            without = widget.grab().toImage()
+            widget.setFocus(Qt.FocusReason.TabFocusReason)
+            assert widget.grab().toImage() != without, (theme, widget, widget.accessibleName())
 
 
 def test_what_tab_reached_is_used_by_the_keys(window: MainWindow) -> None:

@@ -38,7 +38,7 @@ MODIFIERS = (Qt.KeyboardModifier.NoModifier,) * 6 + (
     Qt.KeyboardModifier.AltModifier,
 )
 LEAVE = {"quit"}  # the walk would be over
-PATIENCE_S = 60.0
+PATIENCE_S = 240.0
 HARMLESS = ("This plugin does not support",)
 
 
@@ -47,6 +47,7 @@ class Walk:
 
     Attributes
     ----------
+    steps : how many undo steps there were at the end
     done : what was done, for whoever has to find out why
     warnings : of Qt
     spent_ms : of each event, how long it took with all that came of it: by the clock, and of the window's own thread
@@ -59,7 +60,7 @@ class Walk:
         self.spent_ms: list[tuple[float, float]] = []
         self._pressed: tuple[QWidget, Qt.MouseButton] | None = None
         self._awaited: Callable[[], bool] | None = None  # what has to come of an event, and takes its time
-        self._names = 0
+        self._names = self.steps = 0
         self._kinds: list[tuple[Callable[[], str], int]] = [
             (self._press, 14),
             (self._move, 30),
@@ -90,7 +91,7 @@ class Walk:
         self.spent_ms.append((1e3 * (time.perf_counter() - began), 1e3 * (time.thread_time() - worked)))
         self.done.append(what)
         if self._awaited is not None:
-            self._wait(self._awaited)
+            self.wait(self._awaited)
             self._awaited = None
         self._put_away()
 
@@ -107,21 +108,23 @@ class Walk:
         """Let go, save, and check that the file holds every step."""
         if self._pressed is not None:
             self._release()
-        self._wait(lambda: self.window.inference.idle and self.window.files.opening.path is None)
+        self.wait(lambda: self.window.inference.idle and self.window.files.opening.path is None)
         self.check()
         path = self.folder / "walked.retake"
+        self.steps = self.window.session.undo.count()
         expected = fingerprint(self.window.session.contents())
         saved: list[object] = []
         self.window.keeper.saved.connect(saved.append)
         self.window.keeper.save_as(path)
-        self._wait(lambda: bool(saved))
+        self.wait(lambda: bool(saved))
         assert fingerprint(self.window.session.contents()) == expected
         self.window.session.undo.setClean()
         self.window.close()
-        self._wait(lambda: not self.window.isVisible())
+        self.wait(lambda: not self.window.isVisible())
         assert content_of(path) == expected
 
-    def _wait(self, until: Callable[[], bool]) -> None:
+    def wait(self, until: Callable[[], bool]) -> None:
+        """Go on when something has come, and fail when it does not come."""
         end = time.perf_counter() + PATIENCE_S
         while not until():
             assert time.perf_counter() < end, self.done[-20:]
