@@ -65,8 +65,9 @@ def walk_one(seed: int, events: int) -> int:
     sys.excepthook = lambda *error: raised.append("".join(traceback.format_exception(*error)))
     try:
         walker, warm_mb, end_mb = walk(seed, events, raised)
-    except AssertionError as error:
-        print(f"seed {seed}: {error}", flush=True)
+    except Exception as error:
+        told = str(error) if isinstance(error, AssertionError) else traceback.format_exc()
+        print(f"seed {seed}: {told}", flush=True)
         return 1
     wall, own = np.array(walker.spent_ms).T
     slow = [f"{walker.done[at]} {own[at]:.0f} ms" for at in np.flatnonzero(own > STALL_MS)]
