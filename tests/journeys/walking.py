@@ -66,6 +66,7 @@ class Walk:
             (self._move, 30),
             (self._release, 20),
             (self._click, 10),
+            (self._pull, 8),
             (self._key, 12),
             (self._letter, 3),
             (self._action, 8),
@@ -88,6 +89,7 @@ class Walk:
         began, worked = time.perf_counter(), time.thread_time()
         what = kind()
         QApplication.processEvents()
+        QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)  # as the event loop would
         self.spent_ms.append((1e3 * (time.perf_counter() - began), 1e3 * (time.thread_time() - worked)))
         self.done.append(what)
         if self._awaited is not None:
@@ -181,7 +183,7 @@ class Walk:
         (widget, button), self._pressed = self._pressed, None
         at = QPoint(self.rng.randrange(max(1, widget.width())), self.rng.randrange(max(1, widget.height())))
         tool, inference, session = self.window.curves.tool, self.window.inference, self.window.session
-        drawn = tool.busy and button == Qt.MouseButton.LeftButton and session.draft is not None
+        drawn = tool.busy and button == Qt.MouseButton.LeftButton and inference.busy
         step, kind = session.undo.index(), type(tool).__name__
         QTest.mouseRelease(widget, button, Qt.KeyboardModifier.NoModifier, at)
         if drawn and kind in ("DragTool", "DrawTool") and widget is self.window.curves.viewport():
@@ -189,6 +191,27 @@ class Walk:
             inference.failed.connect(lambda sentence, _: refused.append(sentence))
             self._awaited = lambda: session.undo.index() == step + 1 or bool(refused)
         return f"release {button.name}"
+
+    def _pull(self) -> str:
+        """Drag or sketch a curve, from the press to the release."""
+        if self._pressed is not None:
+            return self._release()
+        name = self.rng.choice(("drag", "draw"))
+        self.window.actions_by_name[f"{name}_tool"].trigger()
+        curves, area = self.window.curves, self.window.curves.viewport()
+        box = curves.lane(self.rng.choice(self.window.session.lanes)).scene_box()
+        points = [
+            curves.mapFromScene(
+                box.left() + self.rng.random() * box.width(), box.top() + self.rng.uniform(-0.2, 1.2) * box.height()
+            )
+            for _ in range(4)
+        ]
+        QTest.mousePress(area, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, points[0])
+        self._pressed = (area, Qt.MouseButton.LeftButton)
+        for point in points:
+            _drag_to(area, point, Qt.MouseButton.LeftButton, self.rng.choice(MODIFIERS))
+        self._release()
+        return f"{name} {[point.toTuple() for point in points]}"
 
     def _click(self) -> str:
         widget, at = self._somewhere()
