@@ -22,7 +22,7 @@ def window(qtbot: QtBot, tmp_path: Path) -> Iterator[MainWindow]:
     opened = MainWindow(
         read_take(demo.BUNDLED), demo.BUNDLED, Settings(tmp_path / "settings.ini"), unsaved=tmp_path / "unsaved"
     )
-    with qtbot.waitSignals([opened.inference.ready, opened.preview.drawing.done], timeout=60_000):
+    with qtbot.waitSignal(opened.inference.ready, timeout=60_000):
         opened.show()
     opened.resize(DESIGNED)  # the offscreen screen is smaller
     settled(qtbot, opened)

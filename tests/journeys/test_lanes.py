@@ -105,6 +105,17 @@ def test_nothing_moves_under_the_pointer_while_a_button_is_down(qtbot: QtBot, wi
     assert curves.lane(other).scene_box().height() > 1.5 * before[3].height()
 
 
+def test_lines_are_as_wide_on_a_finer_screen(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> None:
+    lane = window.curves.lanes[0]
+    assert lane.reached._pen.widthF() == window.curves.devicePixelRatioF()
+    monkeypatch.setattr(type(window.curves), "devicePixelRatioF", lambda _: 2.0)
+    QApplication.sendEvent(window.curves, QEvent(QEvent.Type.DevicePixelRatioChange))
+    lines = (lane.original._pen, lane.reached._pen, lane.asked._pen, lane.removed.line.opts["pen"])
+    assert {pen.widthF() for pen in lines} == {2.0}
+    window.session.expand(0)  # and so are those that come later
+    assert {each.reached._pen.widthF() for each in window.curves.lanes} == {2.0}
+
+
 def test_weights_that_were_put_away_are_drawn_as_they_are_by_now(qtbot: QtBot, window: MainWindow) -> None:
     session, key = window.session, weights_under(EYES[0])[0]
     session.expand(EYES[0])
