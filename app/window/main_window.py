@@ -259,6 +259,9 @@ class MainWindow(QMainWindow):
         self._show_undo()
         self._show_missing()
         self._show_filling()
+        self._watch_keys()
+
+    def _watch_keys(self) -> None:
         self._keyboard = Keyboard(self, self.preview)
         self._focus = Focus(self, self.curves, (self.timeline, self.preview.face))
         self._focus.give_back()
