@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from engine.editing import Patch
 
 FIRST_VIEW_S = 16.0
-BRUSH_S = 0.5
+BRUSH_S, RADII_S = 0.5, (0.01, 10.0)  # of the brush: at first, and from a single frame to a whole phrase
 MAX_OFFSET_S = 36_000.0  # of sound and video
 MEDIA = ("audio", "video")  # the kinds that may be attached
 
@@ -72,7 +72,7 @@ class Session(QObject):
     lane : the curve that is worked on, an index into CURVES
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
-    radius_frames, strength : the Drag tool's brush
+    radius_s, strength : the brush: to how far on either side it reaches, and its share of what is pulled
     exact, follow : whether edits hit the curve exactly, and whether controls that nobody asked for follow
     shows_removed : whether the Clean tool draws what it would remove
     audio : the recording of the sound, None where there is none, or it is not found
@@ -117,7 +117,7 @@ class Session(QObject):
         self.selection: tuple[int, int] | None = None
         self.lane = 0
         self.expanded: frozenset[int] = frozenset()
-        self.radius_frames = max(2, round(BRUSH_S * take.fps))
+        self.radius_s = BRUSH_S
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
         other_head, self.character = self.character is not None, None
@@ -258,6 +258,11 @@ class Session(QObject):
         source = self.draft.weights if CURVES[lane].is_weight else self.draft.reached
         return np.asarray(source[:, CURVES[lane].column])
 
+    @property
+    def radius_frames(self) -> float:
+        """How many frames the brush's radius comes to."""
+        return self.radius_s * self.take.fps
+
     def value(self, lane: int, frame: int) -> float:
         """Return the value to show at a frame: the draft's where it has one."""
         draft = self.draft
@@ -374,14 +379,14 @@ class Session(QObject):
     def set_brush(
         self,
         *,
-        radius_frames: int | None = None,
+        radius_s: float | None = None,
         strength: float | None = None,
         exact: bool | None = None,
         follow: bool | None = None,
     ) -> None:
         """Change the Drag tool."""
-        if radius_frames is not None:
-            self.radius_frames = int(np.clip(radius_frames, 1, 300))
+        if radius_s is not None:
+            self.radius_s = float(np.clip(radius_s, *RADII_S))
         if strength is not None:
             self.strength = float(np.clip(strength, 0.0, 1.0))
         if exact is not None:
