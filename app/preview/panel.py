@@ -24,13 +24,14 @@ from app.preview.camera import PRESETS, Camera, looking
 from app.preview.kept import KeptPictures
 from app.preview.overlay import Overlay, draw_scale
 from app.preview.picking import vertex_under
-from app.preview.renderer import GROUND, Picture, Shot, framed
+from app.preview.renderer import GROUND, Picture, Shot
 from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
 from app.session.inference import Inference
 from app.session.sides import Side
 from app.theme import GRID
 from engine.character import Character, bundled
+from engine.framing import framed
 from engine.take import Array
 
 VIEWS = ("Before", "After", "Split", "Difference")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from app.preview.camera import FACE_WIDTH, FIELD_OF_VIEW_DEG, PRESETS, Camera, looking
-from app.preview.renderer import framed
 from engine.character import bundled
+from engine.framing import framed
 from engine.take import Array
 
 LOW, HIGH = np.array([-0.09, -0.16, -0.1]), np.array([0.09, 0.14, 0.11])
