@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
@@ -25,8 +26,8 @@ from app.actions.settings import SettingsActions
 from app.actions.time import TimeActions
 from app.actions.viseme import VisemeActions
 from app.clean.section import CleanSection
-from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
+from app.curves.places import GUTTER_PX
 from app.curves.tools import TOOLS
 from app.importing.line import ImportLine
 from app.inspector.brush import BrushSection
@@ -53,9 +54,11 @@ from app.spans.filling import Filling
 from app.spans.section import SpansSection
 from app.theme import GRID
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
+from app.window.focus import Focus
 from app.window.keyboard import Keyboard
 from app.window.missing import MissingMedia
 from app.window.notices import Notices
+from app.window.screen import DESIGNED, stay_on_screen
 from app.window.status import StatusBar
 from engine.formats.importing import imported
 from engine.performance import demo
@@ -136,7 +139,7 @@ class MainWindow(QMainWindow):
         self._connect()
         self._connect_importing()
         self.preferences.apply_all()
-        self.resize(1440, 900)
+        self.resize(DESIGNED.boundedTo(self.screen().availableSize()))
         self.session.open(take, path)
         self.files.imported = imported(take)
         self._show_opened()
@@ -156,6 +159,8 @@ class MainWindow(QMainWindow):
             self.preferences,
         )
         owner = next(each for each in owners if name in type(each).__dict__)
+        if name != "cancel":  # which would keep what is half typed
+            self._focus.give_back()
         getattr(owner, name)()
 
     def _lay_out(self) -> None:
@@ -254,7 +259,12 @@ class MainWindow(QMainWindow):
         self._show_undo()
         self._show_missing()
         self._show_filling()
+        self._watch_keys()
+
+    def _watch_keys(self) -> None:
         self._keyboard = Keyboard(self, self.preview)
+        self._focus = Focus(self, self.curves, (self.timeline, self.preview.face))
+        self._focus.give_back()
 
     def _connect_importing(self) -> None:
         self.importing.refused.connect(self.notices.tell)
@@ -271,11 +281,15 @@ class MainWindow(QMainWindow):
         self.attached.moved.connect(self.media.move)
         self.timeline.slid.connect(self.media.settle)
 
+    def focusNextPrevChild(self, onwards: bool) -> bool:
+        """Go through what can be seen as the eye does."""
+        return self._focus.step(onwards)
+
     def showEvent(self, event: QShowEvent) -> None:
         """Load the networks once the window can be seen."""
         super().showEvent(event)
-        self.curves.setFocus()
         QTimer.singleShot(0, self.inference.warm_up)
+        QTimer.singleShot(0, partial(stay_on_screen, self))  # the desktop has drawn its frame by then
 
     # --- opening and closing
 
@@ -336,6 +350,7 @@ class MainWindow(QMainWindow):
     def shut_down(self) -> None:
         """End the threads; the window cannot be used after."""
         self._keyboard.let_go()
+        self._focus.let_go()
         self.transport.run(0.0)
         self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.files.opening.close()

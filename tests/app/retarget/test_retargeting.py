@@ -141,9 +141,8 @@ def test_an_edit_of_the_take_drops_what_was_solved_from_it(qtbot: QtBot, aimed: 
     click(aimed.panel.solve_button)
     qtbot.waitUntil(lambda: aimed.retargeting.result is not None, timeout=60_000)
     session = aimed._session
-    session.replace_rows(
-        0, session.take.weights[:1] * 0.5, session.controls[:1], session.asked[:1], session.take.lost[:1]
-    )
+    take = session.take
+    session.replace_rows(0, take.weights[:1] * 0.5, session.controls[:1], session.asked[:1], take.lost[:1])
     assert aimed.retargeting.result is None
 
 
