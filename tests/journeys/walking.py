@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import random
 import time
 from collections.abc import Callable, Iterator
@@ -49,7 +50,7 @@ class Walk:
     ----------
     steps : how many undo steps there were at the end
     done : what was done, for whoever has to find out why
-    warnings : of Qt
+    warnings : of Qt, and what went wrong on other threads
     spent_ms : of each event, how long it took with all that came of it: by the clock, and of the window's own thread
     """
 
@@ -335,6 +336,12 @@ def undisturbed(walk: Walk) -> Iterator[None]:
         if kind != QtMsgType.QtDebugMsg and not any(known in text for known in HARMLESS):
             walk.warnings.append(text)
 
+    class Failures(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            walk.warnings.append(self.format(record))
+
+    failures, jobs = Failures(logging.ERROR), logging.getLogger("app.background")  # which else only tells the user
+    jobs.addHandler(failures)
     before = qInstallMessageHandler(listen)
     fakes = {
         (QFileDialog, "getOpenFileName"): lambda *_, **__: ("", ""),
@@ -354,6 +361,7 @@ def undisturbed(walk: Walk) -> Iterator[None]:
         for patch in patches:
             patch.stop()
         qInstallMessageHandler(before)
+        jobs.removeHandler(failures)
 
 
 def lay_out_files(folder: Path) -> None:
