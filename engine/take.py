@@ -118,7 +118,8 @@ def runs(mask: Mask) -> list[tuple[int, int]]:
 
 
 def timecode(time_s: float, fps: float) -> str:
-    """Return `MM:SS:FF` for a time in seconds at a frame rate."""
-    frame = round(time_s * fps)
-    whole = max(1, round(fps))
-    return f"{frame // whole // 60:02d}:{frame // whole % 60:02d}:{frame % whole:02d}"
+    """Return `HH:MM:SS:FF` for a time in seconds at a frame rate; a rate such as 29.97 is counted as 30, none dropped."""
+    frame, whole = round(time_s * fps), max(1, round(fps))
+    seconds, sign = abs(frame) // whole, "-" if frame < 0 else ""
+    digits = max(2, len(str(whole - 1)))
+    return f"{sign}{seconds // 3600:02d}:{seconds // 60 % 60:02d}:{seconds % 60:02d}:{abs(frame) % whole:0{digits}d}"

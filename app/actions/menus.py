@@ -14,6 +14,7 @@ from app.actions.table import ACTIONS, LINES, MENUS, TOOLBAR, keys_of
 from app.settings import PRESETS, Settings
 from app.theme import GRID
 from app.widgets.hints import Hints
+from app.widgets.text import caption, tip
 
 
 class Menus(QObject):
@@ -86,8 +87,8 @@ class Menus(QObject):
     def _fill_recent(self) -> None:
         self._recent.clear()
         for name in self._settings.recent:
-            entry = self._recent.addAction(Path(name).name)
-            entry.setToolTip(name)
+            entry = self._recent.addAction(caption(Path(name).name))
+            entry.setToolTip(tip(name))
             entry.triggered.connect(partial(self._load, Path(name)))
         self._recent.setEnabled(bool(self._settings.recent))
 

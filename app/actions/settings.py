@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QWidget
 from app import theme
 from app.actions.menus import Menus
 from app.actions.table import ACTIONS, MENUS, keys_of
-from app.dialogs.page import Page, in_columns
+from app.dialogs.page import Page, in_columns, in_lines
 from app.dialogs.settings import SettingsDialog
 from app.playback.media import Media
 from app.settings import Settings
@@ -65,7 +65,7 @@ class SettingsActions(QObject):
         from app.dialogs.about import describe
 
         name, *rest = describe().split("\n")
-        Page("About Retake", "<br>".join([f"<b>{name}</b>", *rest]), self._window).show()
+        Page("About Retake", in_lines(name, rest), self._window).show()
 
     def apply_all(self) -> None:
         """Let every setting take effect."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.printing import as_json as print_json
+from app.printing import say
 from engine.errors import EditError
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def import_(
     made = imported(path, unit=unit, up=up, names=names or [], landmarks=landmarks or [])
     save(made.character, out)
     if as_json:
-        print(json.dumps(_summary(made)))
+        print_json(_summary(made))
         return
     rows = [
         {"in the file": row.source, "shape": row.shape, "likeness": row.likeness, "taken": row.sure}
@@ -45,8 +46,8 @@ def import_(
     ]
     show(path.name, rows, as_json=False)
     for notice in made.notices:
-        print(notice)
-    print(f"Imported {len(made.character.neutral)} vertices. Written to {out}.")
+        say(notice)
+    say(f"Imported {len(made.character.neutral)} vertices. Written to {out}.")
 
 
 def landmarks_(
@@ -156,7 +157,7 @@ def drive(
     aimed = aim(rest[driver.points], performance.neutral[columns], performance.displacements[:, columns])
     frames = np.stack([frame.astype(np.float32) for frame in driver.frames(aimed)])
     write(MovingMesh(rest, head.triangles, frames, performance.take.fps), out)
-    print(f"Moved {len(rest)} vertices by {len(shared)} points over {len(frames)} frames. Written to {out}.")
+    say(f"Moved {len(rest)} vertices by {len(shared)} points over {len(frames)} frames. Written to {out}.")
 
 
 def register(app: typer.Typer) -> None:

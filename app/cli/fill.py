@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
+from app.printing import say
 from engine.errors import EditError, FormatError
 from engine.formats import format_of, read_take, write_take
 from engine.formats.textfile import read_text
@@ -74,7 +75,7 @@ def fill(
     for index, one in enumerate(filled):
         path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
         write_take(one, path)
-        typer.echo(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
+        say(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
 
 
 def _said(spans: list[tuple[int, int]]) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.printing import say
 from engine.formats import read_take
 from engine.take import timecode
 
@@ -44,10 +45,10 @@ def flags(
         time = timecode(flag.start / seen.fps, seen.fps)
         table.writerow((flag.start, flag.stop, time, flag.kind, f"{flag.weight:.2f}", flag.sentence))
     if out is None:
-        typer.echo(text.getvalue(), nl=False)
+        say(text.getvalue(), end="")
     else:
         write_bytes(out, [text.getvalue().encode()])
-        typer.echo(f"{len(found)} flags; wrote {out}")
+        say(f"{len(found)} flags; wrote {out}")
 
 
 def _lane(path: Path | None, offset_s: float) -> VisemeLane | None:

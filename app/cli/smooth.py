@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from app.cli.takes import Out, TakeFile
+from app.printing import say
 from engine.formats import read_take, write_take
 
 
@@ -24,7 +25,7 @@ def smooth(
     opened = read_take(Path(take))
     chosen = parse_frames(frames, opened) if frames else (0, len(opened))
     write_take(retouch.smooth(opened, chosen, cutoff).apply(opened), out)
-    typer.echo(f"smoothed frames {chosen[0]}:{chosen[1]} at {cutoff:g} Hz; wrote {out}")
+    say(f"smoothed frames {chosen[0]}:{chosen[1]} at {cutoff:g} Hz; wrote {out}")
 
 
 def register(app: typer.Typer) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli import labelled
+from app.printing import say
 from engine.errors import EditError
 from engine.formats.content import require_file, unread
 
@@ -64,7 +65,7 @@ def pin(
     )
     edited = pins.pin(source, {frame: named}, parse_frames(frames, source), whole=not free, spreading=spreading)
     write_take(edited, out)
-    print(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
+    say(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
 
 
 def retarget(
@@ -96,7 +97,7 @@ def retarget(
         raise EditError("Labelled frames belong to the other method.", "Add --method manifold.")
     performance = _source(source, neutral=neutral, unit=unit, fps=fps)
     if suggest is not None:
-        print(*labelled.suggest(performance, suggest, labels), sep="\n")
+        say("\n".join(map(str, labelled.suggest(performance, suggest, labels))))
         return
     if out is None:
         raise EditError("Say where the new take is written.", "Name it with -o.")
@@ -107,8 +108,8 @@ def retarget(
         made, target = _carried(performance, character, landmarks, matching)
     write_take(made, out)
     for notice in made.notices:
-        print(notice)
-    print(f"Moved {target.name} by {len(made)} frames of {source.name}. Written to {out}.")
+        say(notice)
+    say(f"Moved {target.name} by {len(made)} frames of {source.name}. Written to {out}.")
 
 
 def _matching(*, alpha: float | None, beta: float | None, closure: float | None, unbounded: bool) -> Matching:

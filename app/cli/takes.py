@@ -9,6 +9,7 @@ import numpy as np
 import typer
 
 from app.cli.tables import show
+from app.printing import say
 from engine.errors import EditError
 from engine.formats import read_take, write_take
 from engine.take import runs, timecode
@@ -31,12 +32,10 @@ def info(
     ]
     rows += [{"name": "lost", "unit": "frames", "lowest": float(a), "highest": float(b)} for a, b in runs(opened.lost)]
     if not as_json:
-        typer.echo(
-            f"{opened.name}: {len(opened):,} frames at {opened.fps:g} fps, {timecode(opened.duration_s, opened.fps)}"
-        )
-        typer.echo(f"{int(opened.lost.sum()):,} frames lost; head {'recorded' if opened.has_head else 'not recorded'}")
+        say(f"{opened.name}: {len(opened):,} frames at {opened.fps:g} fps, {timecode(opened.duration_s, opened.fps)}")
+        say(f"{int(opened.lost.sum()):,} frames lost; head {'recorded' if opened.has_head else 'not recorded'}")
         for notice in opened.notices:
-            typer.echo(notice)
+            say(notice)
     show(f"{opened.name}, {len(opened)} frames, {opened.fps:g} fps", rows, as_json=as_json)
 
 
@@ -68,11 +67,11 @@ def edit(
     write_take(patch.apply(opened), out)
     measured = bundled_measurer().measure(opened.weights[patch.start : patch.stop])
     reached = patch.reached[start - patch.start : stop - patch.start, column]
-    typer.echo(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} mm")
+    say(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} mm")
     asked = np.where(patch.asked != measured, patch.asked, np.nan)
     for short in shortfalls(patch.weights, asked, bundled_measurer(), exact_curve=exact):
-        typer.echo(f"frame {patch.start + short.row}: {short}")
-    typer.echo(f"frames outside {patch.start}:{patch.stop} are as they were; wrote {out}")
+        say(f"frame {patch.start + short.row}: {short}")
+    say(f"frames outside {patch.start}:{patch.stop} are as they were; wrote {out}")
 
 
 def render(
@@ -99,7 +98,7 @@ def render(
         movie.write_movie(shown, out, height=size)
     else:
         raise EditError(f"{out.name} is neither a picture nor a movie.", "Use a name that ends in .png or .mp4.")
-    typer.echo(f"wrote {out}")
+    say(f"wrote {out}")
 
 
 def register(app: typer.Typer) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QMouseEvent, QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QLabel
 
 from app.curves.lane import GUTTER_PX, Lane
 from app.curves.overlay import Playhead, Underlay
@@ -15,6 +14,7 @@ from app.curves.tools.base import Tool
 from app.session import Change, Session
 from app.session.inference import Inference
 from app.theme import GRID, Palette
+from app.widgets.text import Label
 
 ACTIVE_STRETCH, STRETCH = 24, 10
 WHEEL_STEP = 1.2
@@ -48,7 +48,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self._playhead = Playhead(self._lanes_box, self._x_of)
         self.scene().addItem(self._underlay)
         self.scene().addItem(self._playhead)
-        self.readout = QLabel(self)
+        self.readout = Label("", self)
         self.readout.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.readout.hide()
         self.tools = make_tools(self)

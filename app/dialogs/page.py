@@ -27,7 +27,9 @@ class Page(QDialog):
         self.setWindowTitle(title)
         self.setModal(False)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.text = QLabel(text)
+        self.text = QLabel()  # the only one with markup, whose text is the program's own: `in_columns` and `in_lines`
+        self.text.setTextFormat(Qt.TextFormat.RichText)
+        self.text.setText(text)
         self.text.setTextInteractionFlags(
             Qt.TextInteractionFlag.TextSelectableByMouse
         )  # versions and paths are for copying
@@ -44,6 +46,11 @@ def closing(dialog: QDialog) -> QPushButton:
     button.setProperty("primary", True)
     button.clicked.connect(dialog.close)
     return button
+
+
+def in_lines(heading: str, lines: Sequence[str]) -> str:
+    """Return a heading and lines of plain text as rich text."""
+    return "<br>".join([f"<b>{escape(heading)}</b>", *map(escape, lines)])
 
 
 def in_columns(groups: Mapping[str, Sequence[tuple[str, str]]]) -> str:

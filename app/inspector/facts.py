@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QLabel, QPushButton
+from PySide6.QtWidgets import QPushButton
 
 from app.session import Change, Session
 from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
 from app.widgets.section import Section, quiet
+from app.widgets.text import Label
 from engine.controls import bundled_measurer
 from engine.exact import shortfalls
 from engine.take import Array
@@ -24,7 +25,8 @@ class FactsSection(Section):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "This edit")
-        self.told, self.facts = QLabel(wordWrap=True), quiet("")
+        self.told, self.facts = Label(), quiet("")
+        self.told.setWordWrap(True)
         self.column.addWidget(self.told)
         self.column.addWidget(self.facts)
         self.again_button = QPushButton("Apply to the last edit")

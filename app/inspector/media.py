@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from app.session import MAX_OFFSET_S, MEDIA, Change, Session
 from app.widgets.section import Section, quiet
+from app.widgets.text import Label, tip
 from engine.project import name_of
 
 WORDS = {"audio": "Sound", "video": "Video"}
@@ -58,7 +59,7 @@ class _Box(QWidget):
         super().__init__()
         self.kind = kind
         word = WORDS[kind]
-        self.name = QLabel()
+        self.name = Label()
         self.away = QToolButton()
         self.away.setText("✕")
         self.away.setToolTip(f"Detach the {word.lower()}")
@@ -90,7 +91,7 @@ class _Box(QWidget):
     def show_medium(self, name: str, offset_s: float, fps: float) -> None:
         """Show a file's name, and when it begins."""
         self.name.setText(name if len(name) <= NAME_CHARACTERS else f"{name[: NAME_CHARACTERS - 9]}…{name[-8:]}")
-        self.name.setToolTip(name)
+        self.name.setToolTip(tip(name))
         with QSignalBlocker(self.milliseconds), QSignalBlocker(self.frames):
             self.milliseconds.setValue(1e3 * offset_s)
             self.frames.setRange(-MAX_OFFSET_S * fps, MAX_OFFSET_S * fps)

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox
 from app.session import Change, Session
 from app.widgets.section import Section, quiet, slider
 from engine.errors import EngineError
+from engine.words import NAME_LENGTH, plain
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
@@ -206,7 +207,8 @@ class LiveSection(Section):
         status = self._listener.status()
         if self.subjects.count() != len(status.subjects):
             self.subjects.clear()
-            self.subjects.addItems(list(status.subjects))
+            for name in status.subjects:
+                self.subjects.addItem(plain(name, longest=NAME_LENGTH), name)
         lines = [f"{status.frames:,} frames"]
         if np.isfinite(status.latency_p95_ms):
             lines.append(f"clean {status.latency_p95_ms:.1f} ms after arrival")
@@ -226,7 +228,7 @@ class LiveSection(Section):
 
     def _choose_subject(self, _: int) -> None:
         if self._listener is not None:
-            self._listener.stream.choose(self.subjects.currentText())
+            self._listener.stream.choose(self.subjects.currentData())
 
     def _set_strength(self, percent: int) -> None:
         if self._listener is not None:

@@ -13,7 +13,6 @@ from PySide6.QtWidgets import (
     QComboBox,
     QFrame,
     QHBoxLayout,
-    QLabel,
     QSizePolicy,
     QSplitter,
     QToolButton,
@@ -30,8 +29,10 @@ from app.session import Change, Session
 from app.session.inference import Inference
 from app.session.sides import Side
 from app.theme import GRID
+from app.widgets.text import Label
 from engine.character import Character, bundled
 from engine.take import Array
+from engine.words import SENTENCE_LENGTH, plain
 
 VIEWS = ("Before", "After", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
@@ -167,7 +168,7 @@ class PreviewPanel(QFrame):
         self._sides: tuple[Side, ...] = ()
         self._narrow: list[int] = []  # what the panels' widths were before there were two heads
         self.face = Face()
-        self._frame_label = QLabel()
+        self._frame_label = Label()
         self._frame_label.setProperty("quiet", True)
         self._coarse = False
         self._spent_ms = self._quick_ms = 0.0  # what a picture took, with smooth edges and without
@@ -204,7 +205,7 @@ class PreviewPanel(QFrame):
         self.presets.activated.connect(lambda index: self.look_from(list(PRESETS)[index]))
         row.addWidget(self.presets)
         foot = QHBoxLayout()
-        hint = QLabel("Drag to orbit · wheel to zoom · hold B for before")
+        hint = Label("Drag to orbit · wheel to zoom · hold B for before")
         hint.setProperty("quiet", True)
         foot.addWidget(hint)
         foot.addStretch(1)
@@ -341,7 +342,7 @@ class PreviewPanel(QFrame):
     def _refused(self, wanted: Wanted, sentence: str, advice: str) -> None:
         self._off = True
         self.face.image = QImage()
-        self.face.message = f"Preview off\n\n{sentence}"
+        self.face.message = f"Preview off\n\n{plain(sentence, longest=SENTENCE_LENGTH)}"
         self.face.update()
         self.failed.emit(sentence, advice)
 

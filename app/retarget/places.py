@@ -10,6 +10,7 @@ from app.retarget.placing import Placing
 from app.retarget.retargeting import Retargeting
 from app.session import Session
 from app.widgets.section import Section, quiet
+from engine.words import NAME_LENGTH, plain
 
 LIST_PX = 190
 
@@ -76,7 +77,7 @@ class PlacesSection(Section):
             for row, name in enumerate(names):
                 state = "by hand" if name in target.by_hand else "" if name in target.places else "not placed"
                 item = self.list.item(row)
-                item.setText(f"{row + 1}  {name}" + (f"  · {state}" if state else ""))
+                item.setText(f"{row + 1}  {plain(name, longest=NAME_LENGTH)}" + (f"  · {state}" if state else ""))
                 item.setForeground(QColor("#E69F00") if state == "not placed" else self.palette().text().color())
             chosen = self._placing.chosen
             self.list.setCurrentRow(names.index(chosen) if chosen in names else -1)

@@ -22,6 +22,7 @@ from app.session.commands import MarkCommand
 from app.spans.filling import Filling
 from app.spans.strip import Strip
 from app.widgets.section import Section, empty, quiet
+from app.widgets.text import caption
 from engine.errors import EngineError
 from engine.formats import read_take
 from engine.project import Span
@@ -189,7 +190,7 @@ class SpansSection(Section):
             self._guide = read_take(path) if path else None
         except EngineError as error:
             self.refused.emit(error.sentence, error.advice)
-        self.guide_button.setText(f"Guide: {self._guide.name}" if self._guide else "Guide by a take…")
+        self.guide_button.setText(caption(f"Guide: {self._guide.name}") if self._guide else "Guide by a take…")
         self._shift_row.setVisible(self._guide is not None)
 
     def _on_change(self, change: Change) -> None:

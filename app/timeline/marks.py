@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QPainter
 
 from app.theme import Palette
 from engine.project import Marks, Note, Pin
+from engine.words import NAME_LENGTH, plain
 
 LANE_PX = 18
 APART_PX = 4  # a mark that is nearer to the one before is not drawn
@@ -66,7 +67,9 @@ def _draw_notes(
     for (index, x), following in zip(shown, [*(x for _, x in shown[1:]), np.inf], strict=True):
         room = min(NOTE_PX, following - x - 14)
         if room > 24:
-            text = painter.fontMetrics().elidedText(notes[index].text, Qt.TextElideMode.ElideRight, int(room))
+            text = painter.fontMetrics().elidedText(
+                plain(notes[index].text, longest=NAME_LENGTH), Qt.TextElideMode.ElideRight, int(room)
+            )
             painter.drawText(QRectF(x + 8, box.top(), room, box.height()), Qt.AlignmentFlag.AlignVCenter, text)
 
 

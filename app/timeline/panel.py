@@ -22,9 +22,10 @@ from app.timeline.spans import SpanLane
 from app.timeline.viseme_editing import VisemeEditing
 from app.timeline.visemes import VISEMES_PX, Place
 from app.timeline.waveform import draw_waveform
+from app.widgets.text import tip
 from engine.take import timecode
 
-RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 66
+RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 84
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 SLACK_PX = 3  # a press that moves no farther is a click
 STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
@@ -32,7 +33,7 @@ LAYOUT = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES  # what may 
 SHOWN = LAYOUT | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 HINTS = {
-    "": "Minutes, seconds and frames. Drag to scrub, Shift-drag selects, the wheel zooms.",
+    "": "Hours, minutes, seconds and frames. Drag to scrub, Shift-drag selects, the wheel zooms.",
     "audio": "Drag to move the sound against the face.",
     "spans": "Drag to mark a span, click one to choose it.",
     "visemes": "Drag the ends of a block, double-click to select it, right-click to change it.",
@@ -277,7 +278,7 @@ class Timeline(QWidget):
         return said or HINTS.get(lane, HINTS[""])
 
     def _show_pointer(self, place: QPointF) -> None:
-        self.setToolTip(self.told_at(place))
+        self.setToolTip(tip(self.told_at(place)))
         lane = self._lane_at(place.y())
         if lane == "visemes" and self.visemes.edge_at(place.x()) is not None:
             self.setCursor(Qt.CursorShape.SplitHCursor)

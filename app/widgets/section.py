@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QLabel, QLayout, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QLayout, QSlider, QVBoxLayout, QWidget
 
 from app.session import Session
 from app.theme import GRID
+from app.widgets.text import Label
 
 NUMBER_PX = 96  # of every box with a number
 
@@ -61,16 +62,16 @@ def empty(layout: QLayout) -> None:
             old.deleteLater()
 
 
-def heading(text: str) -> QLabel:
+def heading(text: str) -> Label:
     """Return a title."""
-    label = QLabel(text)
+    label = Label(text)
     label.setProperty("heading", True)
     return label
 
 
-def quiet(text: str) -> QLabel:
+def quiet(text: str) -> Label:
     """Return a label in the quiet colour that wraps."""
-    label = QLabel(text)
+    label = Label(text)
     label.setProperty("quiet", True)
     label.setWordWrap(True)
     return label

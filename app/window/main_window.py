@@ -51,6 +51,7 @@ from app.spans.filling import Filling
 from app.spans.section import SpansSection
 from app.theme import GRID
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
+from app.widgets.text import PlainText, caption, tip, title
 from app.window.keyboard import Keyboard
 from app.window.missing import MissingMedia
 from app.window.notices import Notices
@@ -120,6 +121,7 @@ class MainWindow(QMainWindow):
         )
         self.inspector = Inspector(self.session, sections)
         self._closed = False
+        self._plain_text = PlainText(self)
         self.setAcceptDrops(True)
         self.menus = Menus(self, self.settings, self._do, self.files.load)
         self.actions_by_name = self.menus.actions
@@ -296,6 +298,7 @@ class MainWindow(QMainWindow):
     def shut_down(self) -> None:
         """End the threads; the window cannot be used after."""
         self._keyboard.let_go()
+        self._plain_text.let_go()
         self.transport.run(0.0)
         self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.files.opening.close()
@@ -364,7 +367,7 @@ class MainWindow(QMainWindow):
             self._show_tool()
 
     def _show_title(self, *_: object) -> None:
-        self.setWindowTitle(f"{self.session.name}[*] - Retake")
+        self.setWindowTitle(f"{title(self.session.name)}[*] - Retake")
         self.setWindowModified(self.session.edited)
 
     def _show_hints(self) -> None:
@@ -380,8 +383,9 @@ class MainWindow(QMainWindow):
         ):
             action = self.actions_by_name[name]
             action.setEnabled(able)
-            action.setText(f"{name.capitalize()} {text}".strip())
-            action.setToolTip(f"{action.text()}  ({action.shortcut().toString()})")
+            words = f"{name.capitalize()} {text}".strip()
+            action.setText(caption(words))
+            action.setToolTip(tip(f"{words}  ({action.shortcut().toString()})"))
 
     def _show_transport(self) -> None:
         self.actions_by_name["play"].setChecked(self.transport.playing)
