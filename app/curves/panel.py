@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QMouseEvent, QResizeEvent, QWheelEvent
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QContextMenuEvent, QMouseEvent, QResizeEvent, QWheelEvent
 
 from app.curves.lane import GUTTER_PX, Lane
 from app.curves.overlay import Playhead, Underlay
@@ -30,6 +30,8 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     session : whose curves are shown
     inference : where a tool's asked curves go
     """
+
+    menu_wanted = Signal(str, QPoint)  # curve, lane, or here for all that is at the playhead; where on the screen
 
     def __init__(self, session: Session, inference: Inference, colours: Palette) -> None:
         super().__init__()
@@ -283,12 +285,28 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         elif event.button() == Qt.MouseButton.LeftButton:
             self.tool.release(event)
 
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer what can be done with a curve and go there; with the menu key, at the playhead of the active lane."""
+        event.accept()
+        if self.tool.busy:
+            return
+        at, lane = QPointF(event.pos()), self.lane_at(QPointF(event.pos()))
+        if event.reason() == QContextMenuEvent.Reason.Keyboard:
+            box = self.lane(self.session.lane).scene_box()
+            place = QPointF(min(max(self._x_of(self.session.playhead), box.left()), box.right()), box.center().y())
+            self.menu_wanted.emit("here", self.mapToGlobal(self.mapFromScene(place)))
+        elif lane is not None:
+            self.session.choose_lane(lane)
+            if at.x() >= GUTTER_PX:
+                self.session.move_playhead(round(self.frame_at(at)))
+            self.menu_wanted.emit("curve" if at.x() >= GUTTER_PX else "lane", event.globalPos())
+
     def leaveEvent(self, event: object) -> None:
         """Put hints away with the pointer."""
         self.tool.leave()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom around the pointer; sideways or with Shift pan; while a button is held the tool's size changes."""
+        """Scroll the lanes; with Ctrl zoom around the pointer; sideways or with Shift pan; else change the tool's size."""
         turn = event.angleDelta()
         notches = (turn.y() or turn.x()) / 120.0
         if event.buttons() & Qt.MouseButton.LeftButton or event.modifiers() & Qt.KeyboardModifier.AltModifier:
@@ -297,8 +315,11 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             first, last = self.session.view
             shift = -notches * 0.1 * (last - first)
             self.session.set_view(first + shift, last + shift)
-        else:
+        elif event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             self.session.zoom_view(WHEEL_STEP**notches, self.frame_at(event.position()))
+        else:
+            event.ignore()  # for the scroll area around the lanes
+            return
         event.accept()
 
     def resizeEvent(self, event: QResizeEvent) -> None:

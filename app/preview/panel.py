@@ -6,8 +6,17 @@ import time
 from dataclasses import replace
 
 import numpy as np
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
+from PySide6.QtCore import QPoint, QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import (
+    QColor,
+    QContextMenuEvent,
+    QImage,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+    QWheelEvent,
+)
 from PySide6.QtWidgets import (
     QButtonGroup,
     QComboBox,
@@ -48,6 +57,7 @@ class Face(QWidget):
 
     camera_moved = Signal(object)
     clicked = Signal(QPointF)
+    menu_wanted = Signal(QPoint)  # on the screen
 
     def __init__(self) -> None:
         super().__init__()
@@ -126,13 +136,26 @@ class Face(QWidget):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Let go; a press that went nowhere is a click."""
         self._grip = None
-        if (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX:
+        clicked = (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX
+        if clicked and event.button() == Qt.MouseButton.RightButton:
+            self.menu_wanted.emit(event.globalPosition().toPoint())
+        elif clicked:
             self.clicked.emit(event.position())
         self.setCursor(Qt.CursorShape.OpenHandCursor)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Frame the whole head from the front."""
+        self.frame_head()
+
+    def frame_head(self) -> None:
+        """Look at the whole head from the front."""
         self._move(Camera())
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer what can be done with the face; the mouse's own way is a right click, since a right drag pans."""
+        event.accept()
+        if event.reason() == QContextMenuEvent.Reason.Keyboard:
+            self.menu_wanted.emit(self.mapToGlobal(self.rect().center()))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom."""
@@ -158,6 +181,7 @@ class PreviewPanel(QFrame):
     failed = Signal(str, str)
     picked = Signal(int, int)  # which side was clicked, and the vertex there
     dot_clicked = Signal(str)  # name of a marker
+    view_changed = Signal(str)  # one of VIEWS
 
     def __init__(self, session: Session, inference: Inference) -> None:
         super().__init__()
@@ -225,6 +249,7 @@ class PreviewPanel(QFrame):
         self.face.view = name
         for button in self._views.buttons():
             button.setChecked(button.text() == name)
+        self.view_changed.emit(name)
         self.refresh()
 
     def look_from(self, name: str) -> None:

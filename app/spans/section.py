@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QPoint, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -50,6 +51,7 @@ class SpansSection(Section):
     """
 
     refused = Signal(str, str)
+    menu_wanted = Signal(QPoint)  # on the screen, after the span was chosen
 
     def __init__(self, session: Session, filling: Filling) -> None:
         super().__init__(session, "Spans")
@@ -208,11 +210,18 @@ class SpansSection(Section):
             button.setChecked(span == chosen)
             button.setToolTip("Go to this span and choose it")
             button.clicked.connect(lambda _=False, span=span: self._go_to(span))
+            button.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+            button.customContextMenuRequested.connect(partial(self._open_menu, span, button))
             self._list.addWidget(button)
         if len(spans) > SHOWN_SPANS:
             self._list.addWidget(quiet(f"and {len(spans) - SHOWN_SPANS} more"))
         if not spans:
             self._list.addWidget(quiet("None. Drag in the spans lane to mark one."))
+
+    def _open_menu(self, span: Span, button: QPushButton, at: QPoint) -> None:
+        where = button.mapToGlobal(at)
+        self._go_to(span)  # which lists the spans anew
+        self.menu_wanted.emit(where)
 
     def _go_to(self, span: Span) -> None:
         self.session.select((span.start, span.stop))

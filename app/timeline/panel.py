@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
@@ -17,12 +17,13 @@ from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
 from app.session import Change, Session
 from app.theme import GRID, Palette
 from app.timeline.flags import FLAGS_PX, FlagLane
-from app.timeline.marks import LANE_PX, draw_marks, lanes
+from app.timeline.marks import LANE_PX, NEAR_PX, draw_marks, lanes, nearest_mark
 from app.timeline.spans import SpanLane
 from app.timeline.viseme_editing import VisemeEditing
 from app.timeline.visemes import VISEMES_PX, Place
 from app.timeline.waveform import draw_waveform
 from app.widgets.text import tip
+from engine.project import Note, Pin
 from engine.take import timecode
 
 RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 84
@@ -56,6 +57,7 @@ class Timeline(QWidget):
 
     marked = Signal()  # the selection was drawn in the lane: it is to become a span
     slid = Signal()  # the sound was dragged to where it is shown
+    menu_wanted = Signal(str, QPoint, str)  # kind of thing, where on the screen, what to say of it
 
     def __init__(self, session: Session, colours: Palette, *, gutter_px: int) -> None:
         super().__init__()
@@ -118,6 +120,11 @@ class Timeline(QWidget):
         first, last = self._session.view
         fps = self._session.take.fps
         return self.lane_box("visemes").adjusted(0, 3, 0, -3), (first / fps, last / fps)
+
+    def _near(self, lane: str, x: float) -> Note | Pin | None:
+        """Return the pin or note of a lane at a place in the widget."""
+        within = self.frame_at(x + NEAR_PX) - self.frame_at(x)
+        return nearest_mark(self._session.marks, lane, self.frame_at(x), within)
 
     def _span_px(self) -> float:
         return max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
@@ -208,6 +215,8 @@ class Timeline(QWidget):
             self._session.move_playhead(hit[0].start)
         elif lane == "flags" and (mark := self._flags.at(x)) is not None:
             self._session.move_playhead(mark.flag.start)
+        elif (near := self._near(lane, x)) is not None:
+            self._session.move_playhead(near.frame)
         elif lane == "spans" or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             self._selecting, self._marking = frame, lane == "spans"
         elif lane == "audio":
@@ -264,16 +273,35 @@ class Timeline(QWidget):
             self.visemes.select(event.position().x())
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Offer what can be done with a viseme."""
-        if self._lane_at(event.y()) == "visemes":
-            self.visemes.open_menu(event.x(), event.globalPos(), self._colours)
+        """Offer what can be done with what lies under the pointer, and go there: the menu's actions work on it."""
+        lane, x = self._lane_at(event.y()), event.x()
+        if lane == "visemes":
+            self.visemes.open_menu(x, event.globalPos(), self._colours)
+            return
+        frame = round(self.frame_at(x))
+        span = next((each for each in self._session.marks.spans if each.start <= frame < each.stop), None)
+        mark = self._flags.at(x) if lane == "flags" else None
+        near = self._near(lane, x)
+        kind, told = ("audio", "") if lane == "audio" else ("time", "")
+        if lane == "spans" and span is not None:
+            self._session.select((span.start, span.stop))
+            kind, frame = "span", span.start
+        elif mark is not None:
+            kind, frame, told = "flag", mark.flag.start, mark.flag.sentence
+        elif near is not None:
+            kind, frame, told = lane.removesuffix("s"), near.frame, near.text if isinstance(near, Note) else ""
+        self._session.move_playhead(frame)
+        self.menu_wanted.emit(kind, event.globalPos(), told)
 
     def told_at(self, place: QPointF) -> str:
         """Return what to tell of a place in the widget."""
         lane = self._lane_at(place.y())
         mark = self._flags.at(place.x()) if lane == "flags" else None
+        near = self._near(lane, place.x())
         if mark is not None:
             return mark.sentence
+        if isinstance(near, Note):
+            return f"{near.text}\n{near.author}, {near.time}"
         said = self.visemes.tell(place.x()) if lane == "visemes" and place.x() >= self._gutter else ""
         return said or HINTS.get(lane, HINTS[""])
 

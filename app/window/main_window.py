@@ -7,6 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
 from PySide6.QtWidgets import (
+    QApplication,
     QFrame,
     QHBoxLayout,
     QMainWindow,
@@ -19,10 +20,12 @@ from PySide6.QtWidgets import (
 from app import theme
 from app.actions.edit import EditActions
 from app.actions.file import FileActions
+from app.actions.marks import MarkActions
 from app.actions.media import MediaActions
 from app.actions.menus import Menus
 from app.actions.settings import SettingsActions
 from app.actions.time import TimeActions
+from app.actions.view import ViewActions
 from app.actions.viseme import VisemeActions
 from app.clean.section import CleanSection
 from app.curves.lane import GUTTER_PX
@@ -30,6 +33,7 @@ from app.curves.panel import CurvesPanel
 from app.curves.tools import TOOLS
 from app.inspector.brush import BrushSection
 from app.inspector.facts import FactsSection
+from app.inspector.flags import FlagsSection
 from app.inspector.media import MediaSection
 from app.inspector.panel import Inspector
 from app.inspector.smooth import SmoothSection
@@ -52,6 +56,7 @@ from app.spans.section import SpansSection
 from app.theme import GRID
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.widgets.text import PlainText, caption, tip, title
+from app.window.contexts import Contexts
 from app.window.keyboard import Keyboard
 from app.window.missing import MissingMedia
 from app.window.notices import Notices
@@ -105,6 +110,9 @@ class MainWindow(QMainWindow):
         self.live = LiveSection(self.session, self.keeper.folder)
         self.attached = MediaSection(self.session)
         self.notes = NotesSection(self.session)
+        self.flags = FlagsSection(self.session)
+        self.marks = MarkActions(self.session, self.notes, self.spans)
+        self.views = ViewActions(self.preview)
         self.retarget = RetargetActions(self.session, self)
         sections = (
             self.brush,
@@ -116,8 +124,9 @@ class MainWindow(QMainWindow):
             self.smoothing,
             self.spans,
             self.facts,
-            self.attached,
+            self.flags,
             self.notes,
+            self.attached,
         )
         self.inspector = Inspector(self.session, sections)
         self._closed = False
@@ -137,7 +146,8 @@ class MainWindow(QMainWindow):
     # --- building
 
     def _do(self, name: str) -> None:
-        owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.retarget, self.preferences)
+        tools = (self.edits, self.time, self.marks, self.views, self.visemes, self.retarget)
+        owners = (self, self.files, self.sound, *tools, self.preferences)
         owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
 
@@ -188,10 +198,12 @@ class MainWindow(QMainWindow):
         self.session.changed.connect(self._on_change)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
         shown = (self.preview, self.media, self.reference, self.live, self.retarget)
-        for part in (*shown, self.inference, self.filling, self.keeper, self.visemes, self.timeline.visemes):
+        for part in (*shown, self.inference, self.filling, self.visemes, self.timeline.visemes, self.marks):
             part.failed.connect(self.notices.tell)
+        self.keeper.failed.connect(self.notices.hold)
         self.preview.timed.connect(self.status.timed)
         self._connect_media()
+        self._connect_retarget()
         self.notes.author = lambda: self.settings.author
         self.preferences.themed.connect(self._wear)
         for clock in (self.timeline, self.status):
@@ -205,28 +217,22 @@ class MainWindow(QMainWindow):
         self.smoothing.dropped.connect(self.inference.cancel)
         self.edits.cutoff_hz = self.smoothing.cutoff.value
         self.edits.let_go = self.timeline.visemes.drop
-        self.edits.told.connect(self.status["notice"].setText)
+        self.edits.told.connect(self.status.tell)
+        self.edits.put_away = self.notices.put_away
         self.time.looping = self.actions_by_name["loop"].isChecked
         self.live.face.connect(self.preview.show_live)
         self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
-        self.retarget.shown.connect(self.preview.show_sides)
-        self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
-        self.preview.picked.connect(self.retarget.pick)
-        self.preview.dot_clicked.connect(self.retarget.placing.choose)
-        self.edits.stop_else = self.retarget.retargeting.cancel
-        self.files.capture_dropped.connect(self.retarget.take_in)
-        self.files.character_chosen.connect(self.retarget.retargeting.show_on)
-        self.retarget.retargeting.head_read.connect(self.preview.show_character)
-        self.retarget.retargeting.told.connect(self.status["notice"].setText)
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
         self.timeline.visemes.wanted.connect(self._do)
         self.files.cues_dropped.connect(self.visemes.attach)
         self.files.told.connect(self.notices.tell)
+        self.files.wrote.connect(self.notices.say)
         self.files.opened.connect(self._show_opened)
         self.filling.changed.connect(self._show_filling)
         self.spans.refused.connect(self.notices.tell)
+        self._contexts = Contexts(self)
         self.timeline.marked.connect(self.spans.mark)
         self.spans.strip.wanted.connect(self.preview.draw_strip)
         self.preview.strip_drawn.connect(self.spans.strip.show_picture)
@@ -235,6 +241,17 @@ class MainWindow(QMainWindow):
         self._show_missing()
         self._show_filling()
         self._keyboard = Keyboard(self, self.preview)
+
+    def _connect_retarget(self) -> None:
+        self.retarget.shown.connect(self.preview.show_sides)
+        self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
+        self.preview.picked.connect(self.retarget.pick)
+        self.preview.dot_clicked.connect(self.retarget.placing.choose)
+        self.edits.stop_else = self.retarget.retargeting.cancel
+        self.files.capture_dropped.connect(self.retarget.take_in)
+        self.files.character_chosen.connect(self.retarget.retargeting.show_on)
+        self.retarget.retargeting.head_read.connect(self.preview.show_character)
+        self.retarget.retargeting.told.connect(self.status.hold)
 
     def _connect_media(self) -> None:
         self.media.missing_changed.connect(self._show_missing)
@@ -261,7 +278,7 @@ class MainWindow(QMainWindow):
     def _show_opened(self) -> None:
         self.transport.run(0.0)
         self.notices.hide()
-        self.status["notice"].setText(" ".join(self.session.take.notices))
+        self.status.tell(" ".join(self.session.take.notices))
         self._show_title()
         self.status.show_take()
 
@@ -320,14 +337,6 @@ class MainWindow(QMainWindow):
         """End the program; what is not saved is kept for the next start."""
         self.close()
 
-    def fill(self) -> None:
-        """Fill the chosen span, or the selection."""
-        self.spans.fill()
-
-    def note(self) -> None:
-        """Type a note on the frame at the playhead."""
-        self.notes.entry.setFocus()
-
     def _show_filling(self) -> None:
         # Enter belongs to the buttons too, unless there is a variant to keep
         self.actions_by_name["accept"].setEnabled(bool(self.filling.variants))
@@ -346,6 +355,7 @@ class MainWindow(QMainWindow):
 
     def _wear(self, colours: theme.Palette) -> None:
         self.colours = colours
+        QApplication.setPalette(theme.qt_palette(colours))
         self.setStyleSheet(theme.style_sheet(colours))
         self.curves.paint_with(colours)
         self.timeline.paint_with(colours)

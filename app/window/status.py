@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QSizePolicy
 
 from app.playback.media import Media
@@ -17,6 +18,7 @@ from engine.words import counted, plain
 
 LONGEST = 40  # characters of a name in this line
 NAMES = ("take", "rate", "length", "place", "notice", "engine", "sound", "saved", "speed")
+TOLD_MS = 12_000  # how long something is told in passing
 LATENCIES = 20  # that the median is taken of
 
 
@@ -34,7 +36,9 @@ class StatusBar(QFrame):
         self._session, self._keeper, self._opening, self._media = session, keeper, opening, media
         self._latencies_ms: list[float] = []
         self.in_frames = False
+        self._passing = QTimer(self, singleShot=True)
         self._labels = {name: Name(longest=LONGEST) if name == "take" else Label() for name in NAMES}
+        self._passing.timeout.connect(self._labels["notice"].clear)
         self.saving = Progress("Stop saving", keeper.stop_saving)
         self.opening = Progress("Stop opening", opening.stop)
         self._lay_out()
@@ -63,6 +67,16 @@ class StatusBar(QFrame):
 
     def __getitem__(self, name: str) -> Label:
         return self._labels[name]
+
+    def tell(self, text: str) -> None:
+        """Tell something in passing: it goes when it was there long enough to be read."""
+        self["notice"].setText(text)
+        self._passing.start(TOLD_MS)
+
+    def hold(self, text: str) -> None:
+        """Tell something until something else is told."""
+        self._passing.stop()
+        self["notice"].setText(text)
 
     def show_take(self, *_: object) -> None:
         """Tell what is open."""
