@@ -98,13 +98,14 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             (kinds.DRAFT, self.tool.refresh),
             (kinds.TAKE | kinds.TOOL, self._take_up_tool),
             (kinds.TAKE | kinds.LANES | kinds.TOOL | kinds.VIEW | kinds.SELECTION | kinds.MARKS, self._show_marks),
+            (kinds.CURVES, self._show_marks),  # a fill that is kept is no span to work on any more
         ):
             if change & cause:
                 step()
 
     def _show_marks(self) -> None:
         self._underlay.selection = self.session.selection
-        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.marks.spans]
+        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.open_spans]
         self._underlay.update()
         self._playhead.update()
 

@@ -55,12 +55,11 @@ def in_lines(heading: str, lines: Sequence[str]) -> str:
 
 def in_columns(groups: Mapping[str, Sequence[tuple[str, str]]]) -> str:
     """Return named groups of pairs as rich text, in columns of about one height; a group is not torn apart."""
-    full = sum(1 + len(rows) for rows in groups.values()) / COLUMNS
-    columns, used = [""] * COLUMNS, 0.0
+    columns, heights = [""] * COLUMNS, [0] * COLUMNS
     for name, rows in groups.items():
-        column = min(COLUMNS - 1, int((used + len(rows) / 2) / full))
+        column = heights.index(min(heights))
         columns[column] += _table(name, rows)
-        used += 1 + len(rows)
+        heights[column] += 2 + len(rows)
     cells = "".join(f"<td style='padding-right: {3 * GRID}px'>{column}</td>" for column in columns)
     return f"<table><tr>{cells}</tr></table>"
 

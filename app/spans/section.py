@@ -28,6 +28,7 @@ from engine.errors import EngineError
 from engine.formats import read_take
 from engine.project import Span
 from engine.take import Take, timecode
+from engine.words import counted
 
 SHOWN_SPANS = 8
 REGIONS = {
@@ -196,16 +197,18 @@ class SpansSection(Section):
         self._shift_row.setVisible(self._guide is not None)
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.MARKS | Change.SELECTION | Change.VISEMES):
+        if change & (Change.TAKE | Change.MARKS | Change.SELECTION | Change.VISEMES | Change.CURVES):
             self._show_list()
             self._show()
 
     def _show_list(self) -> None:
         empty(self._list)
         spans, fps, chosen = self.session.marks.spans, self.session.take.fps, self.chosen
+        to_do = set(self.session.open_spans)
         for span in spans[:SHOWN_SPANS]:
-            kind = "lost" if span.kind == "lost" else "marked"
-            button = QPushButton(f"{timecode(span.start / fps, fps)}  {kind} · {span.stop - span.start} frames")
+            kind = "marked" if span.kind != "lost" else "lost" if span in to_do else "filled"
+            length = counted(span.stop - span.start, "frame")
+            button = QPushButton(f"{timecode(span.start / fps, fps)}  {kind} · {length}")
             button.setCheckable(True)
             button.setChecked(span == chosen)
             button.setToolTip("Go to this span and choose it")
@@ -214,7 +217,7 @@ class SpansSection(Section):
             button.customContextMenuRequested.connect(partial(self._open_menu, span, button))
             self._list.addWidget(button)
         if len(spans) > SHOWN_SPANS:
-            self._list.addWidget(quiet(f"and {len(spans) - SHOWN_SPANS} more"))
+            self._list.addWidget(quiet(f"and {len(spans) - SHOWN_SPANS:,} more"))
         if not spans:
             self._list.addWidget(quiet("None. Drag in the spans lane to mark one."))
 
@@ -243,7 +246,7 @@ class SpansSection(Section):
             with QSignalBlocker(self.region):
                 self.region.setCurrentText(names[chosen.region])
             pins = sum(chosen.start <= pin.frame < chosen.stop for pin in self.session.marks.pins)
-            self.note.setText(f"{pins} pin{'s' * (pins != 1)} inside will be met exactly." if pins else "")
+            self.note.setText(f"{counted(pins, 'pin')} inside will be met exactly." if pins else "")
             self.note.setVisible(bool(pins))
 
 

@@ -31,7 +31,7 @@ SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames st
 SLACK_PX = 3  # a press that moves no farther is a click
 STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
 LAYOUT = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES  # what may bring lanes or take them away
-SHOWN = LAYOUT | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
+SHOWN = LAYOUT | Change.CURVES | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 HINTS = {
     "": "Hours, minutes, seconds and frames. Drag to scrub, Shift-drag selects, the wheel zooms.",
@@ -56,6 +56,7 @@ class Timeline(QWidget):
     """
 
     marked = Signal()  # the selection was drawn in the lane: it is to become a span
+    told = Signal(str)  # what is wrong at the flag that was clicked
     slid = Signal()  # the sound was dragged to where it is shown
     menu_wanted = Signal(str, QPoint, str)  # kind of thing, where on the screen, what to say of it
 
@@ -146,6 +147,8 @@ class Timeline(QWidget):
         painter, boxes = QPainter(self), self._lanes()
         painter.setPen(QColor(self._colours.quiet))
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        unit = "frame" if self.in_frames else "h : min : s : frame"
+        painter.drawText(QRectF(GRID, 4, self._gutter, 14), left, unit)
         for name, box in boxes.items():
             painter.drawText(QRectF(GRID, box.top(), self._gutter, box.height()), left, name)
         painter.setClipRect(QRectF(self._gutter, 0, self._span_px(), self.height()))
@@ -154,7 +157,7 @@ class Timeline(QWidget):
         self._draw_audio(painter)
         self.visemes.draw(painter, self._colours)
         marks, view = self._session.marks, self._session.view
-        self._spans.draw(painter, marks.spans, boxes["spans"], view, self._colours)
+        self._spans.draw(painter, self._session.open_spans, boxes["spans"], view, self._colours)
         self._flags.draw(painter, self._session.flags, boxes["flags"], view, self._colours)
         for name in lanes(marks):
             draw_marks(painter, marks, name, (boxes[name], view), self._colours)
@@ -215,6 +218,7 @@ class Timeline(QWidget):
             self._session.move_playhead(hit[0].start)
         elif lane == "flags" and (mark := self._flags.at(x)) is not None:
             self._session.move_playhead(mark.flag.start)
+            self.told.emit(mark.sentence)
         elif (near := self._near(lane, x)) is not None:
             self._session.move_playhead(near.frame)
         elif lane == "spans" or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:

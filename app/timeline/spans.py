@@ -23,7 +23,7 @@ class SpanLane:
     def draw(
         self, painter: QPainter, spans: tuple[Span, ...], box: QRectF, view: tuple[float, float], colours: Palette
     ) -> None:
-        """Draw the spans that reach into a view, first and last frame, in a box whose edges those are."""
+        """Draw the spans to work on that reach into a view, first and last frame, in a box whose edges those are."""
         if spans is not self._spans:
             self._spans = spans
             self._frames = np.array([(span.start, span.stop) for span in spans], float).reshape(-1, 2) - 0.5

@@ -217,7 +217,8 @@ class MainWindow(QMainWindow):
         self.smoothing.dropped.connect(self.inference.cancel)
         self.edits.cutoff_hz = self.smoothing.cutoff.value
         self.edits.let_go = self.timeline.visemes.drop
-        self.edits.told.connect(self.status.tell)
+        for told in (self.edits.told, self.time.told, self.timeline.told):
+            told.connect(self.status.tell)
         self.edits.put_away = self.notices.put_away
         self.time.looping = self.actions_by_name["loop"].isChecked
         self.live.face.connect(self.preview.show_live)
@@ -371,7 +372,7 @@ class MainWindow(QMainWindow):
         if change & (Change.TAKE | Change.VISEMES):
             for name in ("shift_visemes", "restore_visemes", "remove_visemes"):
                 self.actions_by_name[name].setEnabled(self.session.visemes is not None)
-        if change & (Change.TAKE | Change.MARKS | Change.SAVED):
+        if change & (Change.TAKE | Change.MARKS | Change.SAVED | Change.CURVES):
             self._show_hints()
         if change & Change.TOOL:
             self._show_tool()
@@ -382,7 +383,7 @@ class MainWindow(QMainWindow):
 
     def _show_hints(self) -> None:
         session, stack = self.session, self.session.undo
-        self.menus.show_hints(changed=stack.count() > 0, saved=not session.edited, hatched=bool(session.marks.spans))
+        self.menus.show_hints(changed=stack.count() > 0, saved=not session.edited, hatched=bool(session.open_spans))
 
     def _show_undo(self, *_: int) -> None:
         stack = self.session.undo

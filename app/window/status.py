@@ -10,9 +10,11 @@ from app.playback.media import Media
 from app.session import Change, Session
 from app.session.keeper import Keeper
 from app.session.opening import Opening
+from app.session.sound import beyond_the_take
 from app.theme import GRID
 from app.widgets.progress import Progress
-from app.widgets.text import Label, Name
+from app.widgets.text import Label, Name, tip
+from engine.formats.audio import Audio
 from engine.take import timecode
 from engine.words import counted, plain
 
@@ -36,6 +38,7 @@ class StatusBar(QFrame):
         self._session, self._keeper, self._opening, self._media = session, keeper, opening, media
         self._latencies_ms: list[float] = []
         self.in_frames = False
+        self._sound: Audio | None = None  # whose length was told
         self._passing = QTimer(self, singleShot=True)
         self._labels = {name: Name(longest=LONGEST) if name == "take" else Label() for name in NAMES}
         self._passing.timeout.connect(self._labels["notice"].clear)
@@ -71,6 +74,7 @@ class StatusBar(QFrame):
     def tell(self, text: str) -> None:
         """Tell something in passing: it goes when it was there long enough to be read."""
         self["notice"].setText(text)
+        self["notice"].setToolTip(tip(text))
         self._passing.start(TOLD_MS)
 
     def hold(self, text: str) -> None:
@@ -107,6 +111,10 @@ class StatusBar(QFrame):
             self.show_place()
         if change & (Change.TAKE | Change.CURVES | Change.SAVED):
             self._show_saved()
+        if change & Change.MEDIA and self._session.audio is not self._sound:
+            self._sound = self._session.audio
+            if beyond := beyond_the_take(self._session):
+                self.tell(beyond)
 
     def _show_saved(self) -> None:
         saving, opening = self._keeper.saving, self._opening.path
