@@ -244,7 +244,7 @@ class SpansSection(Section):
             self.visemes.setVisible(bool(filling.said(chosen)))
             names = {region: title for title, region in REGIONS.items()}
             with QSignalBlocker(self.region):
-                self.region.setCurrentText(names[chosen.region])
+                self.region.setCurrentText(names.get(chosen.region, next(iter(REGIONS))))
             pins = sum(chosen.start <= pin.frame < chosen.stop for pin in self.session.marks.pins)
             self.note.setText(f"{counted(pins, 'pin')} inside will be met exactly." if pins else "")
             self.note.setVisible(bool(pins))

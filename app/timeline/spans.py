@@ -8,6 +8,7 @@ from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
 from app.theme import Palette
 from engine.project import Span
+from engine.words import NAME_LENGTH, plain
 
 GAP_PX = 2.0  # a span that ends this near to the one before is not drawn
 NAME_PX = 24  # boxes below this have no name
@@ -49,7 +50,7 @@ class SpanLane:
 
 
 def _draw_name(painter: QPainter, span: Span, box: QRectF, colours: Palette) -> None:
-    title = "lost" if span.kind == "lost" else span.region
+    title = "lost" if span.kind == "lost" else plain(span.region, longest=NAME_LENGTH)
     text = painter.fontMetrics().horizontalAdvance(title) + 10
     if box.width() > text + 4:
         label = QRectF(box.center().x() - text / 2, box.top() + 1, text, box.height() - 2)
