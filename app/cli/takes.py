@@ -81,6 +81,9 @@ def render(
     compare: Annotated[Path | None, typer.Option(help="Another take to draw at its right.")] = None,
     character: Annotated[Path | None, typer.Option(help="A head to draw it on; the bundled one without.")] = None,
     size: Annotated[int, typer.Option(help="Height in pixels.", min=64, max=4096)] = 720,
+    codec: Annotated[
+        str | None, typer.Option(help="Of a movie: av1, vp9, mpeg4, or h264 for players that know nothing else.")
+    ] = None,
 ) -> None:
     """Draw a take: a PNG of one frame, or an MP4 of all of it."""
     from app.preview import movie
@@ -95,7 +98,7 @@ def render(
     if out.suffix.lower() == ".png":
         movie.write_picture(shown, frame or 0, out, height=size)
     elif out.suffix.lower() == ".mp4":
-        movie.write_movie(shown, out, height=size)
+        movie.write_movie(shown, out, height=size, codec=codec)
     else:
         raise EditError(f"{out.name} is neither a picture nor a movie.", "Use a name that ends in .png or .mp4.")
     say(f"wrote {out}")
