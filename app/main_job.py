@@ -15,6 +15,7 @@ from engine.errors import EngineError
 from engine.formats import read_take, write_take
 from engine.performance import demo
 from engine.take import Take
+from engine.words import counted
 
 SPAN_FRAMES = 20
 MOVIE_MARGIN_FRAMES = 20
@@ -59,9 +60,11 @@ def main() -> int:
         return 2
     start, stop = frames
     lips = measure(edited.weights)[start:stop, LIPS]
-    say(f"{take.name}: {len(take)} frames at {take.fps:g} fps, {int(take.lost.sum())} lost")
+    say(f"{take.name}: {counted(len(take), 'frame')} at {take.fps:g} fps, {int(take.lost.sum())} lost")
     say(f"closed the lips over frames {start}:{stop}; they are now at most {lips.max():.2f} mm apart")
-    say(f"{len(take) - (patch.stop - patch.start)} frames outside {patch.start}:{patch.stop} are bit-identical")
+    say(
+        f"{counted(len(take) - (patch.stop - patch.start), 'frame')} outside {patch.start}:{patch.stop} are bit-identical"
+    )
     for file in written:
         say(f"wrote {file}")
     return 0

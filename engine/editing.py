@@ -19,6 +19,7 @@ from engine.models.resample import interpolate
 from engine.regress import infer
 from engine.regress.network import ALIGNMENT, REACH
 from engine.take import MODEL_FPS, SHAPES, Array, Mask, Take
+from engine.words import counted
 
 Change = Literal["set", "add", "scale"]
 # The smallest change that closes lips is mouthClose over an open jaw, which nobody does.
@@ -68,7 +69,7 @@ class Patch:
         """Return the patch that turns one take into another over a half-open range; nothing was asked of controls."""
         rows = np.asarray(after.weights[frames[0] : frames[1]])
         if before.weights.shape != after.weights.shape:
-            raise EditError(f"The new weights have {len(after)} frames, the take {len(before)}.")
+            raise EditError(f"The new weights have {counted(len(after), 'frame')}, the take {len(before)}.")
         reached = bundled_measurer().measure(rows)
         return cls(frames[0], rows, reached, reached)
 
@@ -86,7 +87,7 @@ def parse_frames(text: str, take: Take) -> tuple[int, int]:
             f"{text!r} is not a range of frames.", "Write the first frame and the one after the last: 40:60."
         ) from None
     if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
     return start, stop
 
 
@@ -150,7 +151,9 @@ class Dragger:
         """
         stop = start + len(asked)
         if not (0 <= start < stop <= len(self.take)) or asked.shape[1] != len(CONTROLS):
-            raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(self.take)} frames.")
+            raise EditError(
+                f"Frames {start}:{stop} are not within the take, which has {counted(len(self.take), 'frame')}."
+            )
         if not (np.abs(asked) < FARTHEST_MM**2).all():
             raise EditError("The asked curves must be finite, and within what a face could be asked.")
         feather = round(FEATHER_S * self.take.fps)

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import EditError
+from engine.words import counted
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -91,7 +92,7 @@ class Take:
     def with_weights(self, weights: Array) -> Take:
         """Return the same take with other weights, (frames, 52)."""
         if weights.shape != self.weights.shape:
-            raise EditError(f"The new weights have {weights.shape[0]} frames, the take {len(self)}.")
+            raise EditError(f"The new weights have {counted(weights.shape[0], 'frame')}, the take {len(self)}.")
         return replace(self, weights=weights)
 
     def with_rows(self, start: int, rows: Array) -> Take:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from app.printing import say
+from engine.words import counted
 
 
 def make(
@@ -30,7 +31,7 @@ def make(
         movie.write_movie([one.take], out / f"{one.name}.mp4", height=size)
     write_bytes(out / "answers.csv", ["".join(["movie,answer\n", *(f"{one.name},\n" for one in sheet)]).encode()])
     write_bytes(key, [key_of(sheet).encode()])
-    say(f"wrote {len(sheet)} movies and answers.csv to {out}; the key is {key}")
+    say(f"wrote {counted(len(sheet), 'movie')} and answers.csv to {out}; the key is {key}")
 
 
 def score(

@@ -10,6 +10,7 @@ import typer
 from app.printing import as_json as print_json
 from app.printing import say
 from engine.errors import EditError
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.formats.characters.assemble import Import
@@ -47,7 +48,7 @@ def import_(
     show(path.name, rows, as_json=False)
     for notice in made.notices:
         say(notice)
-    say(f"Imported {len(made.character.neutral)} vertices. Written to {out}.")
+    say(f"Imported {counted(len(made.character.neutral), 'vertex', 'vertices')}. Written to {out}.")
 
 
 def landmarks_(
@@ -157,7 +158,8 @@ def drive(
     aimed = aim(rest[driver.points], performance.neutral[columns], performance.displacements[:, columns])
     frames = np.stack([frame.astype(np.float32) for frame in driver.frames(aimed)])
     write(MovingMesh(rest, head.triangles, frames, performance.take.fps), out)
-    say(f"Moved {len(rest)} vertices by {len(shared)} points over {len(frames)} frames. Written to {out}.")
+    moved = f"{counted(len(rest), 'vertex', 'vertices')} by {counted(len(shared), 'point')}"
+    say(f"Moved {moved} over {counted(len(frames), 'frame')}. Written to {out}.")
 
 
 def register(app: typer.Typer) -> None:

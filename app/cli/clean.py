@@ -17,6 +17,7 @@ from app.printing import as_json as print_json
 from app.printing import remark, say
 from engine.errors import EngineError
 from engine.formats import format_of, read_take, write_take
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
@@ -96,7 +97,7 @@ def _write_recording(recorder: Recorder, spool: Spool, record: Path) -> None:
         elsewhere = spool.path if _saved(spool) else _written_elsewhere(taken, record)
         raise EngineError(f"{error.sentence} The recording is in {elsewhere}.", error.advice) from error
     spool.close(remove=True)
-    remark(f"wrote {record}: {len(taken)} frames, {int(taken.lost.sum())} of them lost")
+    remark(f"wrote {record}: {counted(len(taken), 'frame')}, {int(taken.lost.sum())} of them lost")
 
 
 def _saved(spool: Spool) -> bool:
@@ -153,7 +154,7 @@ def _tell(listener: Listener, seconds: float | None, spool: Spool | None, *, as_
         else:
             drops = ", ".join(f"{count} {reason}" for reason, count in status.drops.items()) or "none dropped"
             late = "" if latency is None else f", p95 {latency} ms"
-            say(f"{status.frames} frames, {drops}{late}")
+            say(f"{counted(status.frames, 'frame')}, {drops}{late}")
 
 
 def replay(
@@ -172,7 +173,7 @@ def replay(
 
     network = Network(loss, reorder, jitter_ms / 1e3)
     sent = send(read_take(take), _address(to), network, repeat=repeat, subject=subject)
-    say(f"sent {sent} packets to {to}")
+    say(f"sent {counted(sent, 'packet')} to {to}")
 
 
 def _address(text: str) -> tuple[str, int]:

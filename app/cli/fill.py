@@ -12,6 +12,7 @@ from app.printing import say
 from engine.errors import EditError, FormatError
 from engine.formats import format_of, read_take, write_take
 from engine.formats.textfile import read_text
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.pose import Pose
@@ -80,7 +81,7 @@ def fill(
 
 def _said(spans: list[tuple[int, int]]) -> str:
     if len(spans) > 4:
-        return f"{len(spans)} spans, {sum(stop - start for start, stop in spans)} frames"
+        return f"{counted(len(spans), 'span')}, {counted(sum(stop - start for start, stop in spans), 'frame')}"
     return "frames " + ", ".join(f"{start}:{stop}" for start, stop in spans)
 
 
@@ -98,7 +99,7 @@ def _pin(text: str) -> tuple[int, Pose]:
     other = read_take(Path(name))
     index = int(which)
     if index >= len(other):
-        raise EditError(f"{other.name} has no frame {index}: it has {len(other)} frames.")
+        raise EditError(f"{other.name} has no frame {index}: it has {counted(len(other), 'frame')}.")
     return int(frame), other.weights[index]
 
 

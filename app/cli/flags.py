@@ -12,6 +12,7 @@ import typer
 from app.printing import say
 from engine.formats import read_take
 from engine.take import timecode
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.quality import Seen
@@ -48,7 +49,7 @@ def flags(
         say(text.getvalue(), end="")
     else:
         write_bytes(out, [text.getvalue().encode()])
-        say(f"{len(found)} flags; wrote {out}")
+        say(f"{counted(len(found), 'flag')}; wrote {out}")
 
 
 def _lane(path: Path | None, offset_s: float) -> VisemeLane | None:

@@ -12,6 +12,7 @@ from app.cli import labelled
 from app.printing import say
 from engine.errors import EditError
 from engine.formats.content import require_file, unread
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.character import Character
@@ -109,7 +110,7 @@ def retarget(
     write_take(made, out)
     for notice in made.notices:
         say(notice)
-    say(f"Moved {target.name} by {len(made)} frames of {source.name}. Written to {out}.")
+    say(f"Moved {target.name} by {counted(len(made), 'frame')} of {source.name}. Written to {out}.")
 
 
 def _matching(*, alpha: float | None, beta: float | None, closure: float | None, unbounded: bool) -> Matching:

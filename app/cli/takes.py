@@ -13,6 +13,7 @@ from app.printing import say
 from engine.errors import EditError
 from engine.formats import read_take, write_take
 from engine.take import runs, timecode
+from engine.words import counted
 
 TakeFile = Annotated[Path, typer.Argument(help="A take: a Live Link Face CSV.", show_default=False)]
 Out = Annotated[Path, typer.Option("-o", "--out", help="The file to write.", show_default=False)]
@@ -32,11 +33,15 @@ def info(
     ]
     rows += [{"name": "lost", "unit": "frames", "lowest": float(a), "highest": float(b)} for a, b in runs(opened.lost)]
     if not as_json:
-        say(f"{opened.name}: {len(opened):,} frames at {opened.fps:g} fps, {timecode(opened.duration_s, opened.fps)}")
-        say(f"{int(opened.lost.sum()):,} frames lost; head {'recorded' if opened.has_head else 'not recorded'}")
+        say(
+            f"{opened.name}: {counted(len(opened), 'frame')} at {opened.fps:g} fps, {timecode(opened.duration_s, opened.fps)}"
+        )
+        say(
+            f"{counted(int(opened.lost.sum()), 'frame')} lost; head {'recorded' if opened.has_head else 'not recorded'}"
+        )
         for notice in opened.notices:
             say(notice)
-    show(f"{opened.name}, {len(opened)} frames, {opened.fps:g} fps", rows, as_json=as_json)
+    show(f"{opened.name}, {counted(len(opened), 'frame')}, {opened.fps:g} fps", rows, as_json=as_json)
 
 
 def edit(
@@ -90,7 +95,7 @@ def render(
 
     shown = [read_take(path) for path in (take, compare) if path is not None]
     if frame is not None and not all(0 <= frame < len(each) for each in shown):
-        raise EditError(f"Frame {frame} is not within the take, which has {min(map(len, shown))} frames.")
+        raise EditError(f"Frame {frame} is not within the take, which has {counted(min(map(len, shown)), 'frame')}.")
     if character is not None:
         from engine.formats.characters.opening import character_of
 

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QCheckBox, QSpinBox
 
 from app.session import Change, Session
-from app.widgets.section import Section, slider
+from app.widgets.section import CountBox, Section, slider
 
 
 class BrushSection(Section):
@@ -16,7 +16,7 @@ class BrushSection(Section):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "Brush")
-        self.radius = QSpinBox(minimum=1, maximum=300, suffix=" frames")
+        self.radius = CountBox("frame", lowest=1, highest=300)
         self.radius.setToolTip("How many frames on either side follow. Turn the wheel while dragging to change it.")
         self._radius_slider = slider(1, 120)
         self.row("Radius", self.radius)
@@ -33,10 +33,10 @@ class BrushSection(Section):
             "Curves that you never touched go along with the one you pull; without it, they hold it back where they were."
         )
         self.column.addWidget(self.follow)
-        for widget in (self.radius, self._radius_slider):
-            widget.valueChanged.connect(self._set_radius)
-        for widget in (self.strength, self._strength_slider):
-            widget.valueChanged.connect(self._set_strength)
+        self.radius.valueChanged.connect(self._set_radius)
+        self._radius_slider.valueChanged.connect(self._set_radius)
+        self.strength.valueChanged.connect(self._set_strength)
+        self._strength_slider.valueChanged.connect(self._set_strength)
         self.exact.toggled.connect(self._set_exact)
         self.follow.toggled.connect(self._set_follow)
         session.changed.connect(self._on_change)

@@ -14,6 +14,7 @@ from app.widgets.text import Label
 from engine.controls import bundled_measurer
 from engine.exact import shortfalls
 from engine.take import Array
+from engine.words import counted
 
 LEGEND = "Curves: grey as recorded, dashed as asked."
 
@@ -72,13 +73,13 @@ class FactsSection(Section):
     def _counts(self) -> str:
         session, draft, frames = self.session, self.session.draft, len(self.session.take)
         if draft is not None:
-            return f"moves {draft.stop - draft.start:,} of {frames:,} frames"
+            return f"moves {draft.stop - draft.start:,} of {counted(frames, 'frame')}"
         if not session.undo.index():
             return "Nothing changed yet. Drag a curve up or down."
         moved = int((session.take.weights != session.original.weights).any(axis=1).sum())
         if not moved:
             return "Every frame is as recorded."
-        return f"{moved:,} of {frames:,} frames changed, the rest is as recorded, bit for bit.\n{LEGEND}"
+        return f"{moved:,} of {counted(frames, 'frame')} changed, the rest is as recorded, bit for bit.\n{LEGEND}"
 
 
 def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, exact: bool) -> list[str]:

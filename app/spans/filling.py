@@ -15,6 +15,7 @@ from engine.controls import CONTROLS
 from engine.project import Span
 from engine.speech.visemes import Cue
 from engine.take import Array, Take
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -138,7 +139,7 @@ class Filling(QObject):
         frames = request.span.stop - request.span.start
         inputs = {**request.inputs, "seed": self.chosen_seed}
         self._forget()
-        title = f"fill {frames} frames"
+        title = f"fill {counted(frames, 'frame')}"
         self._session.undo.push(EditCommand(self._session, patch, title, kind="fill", inputs=inputs))
 
     def drop(self) -> None:

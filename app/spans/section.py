@@ -22,7 +22,7 @@ from app.session import Change, Session
 from app.session.commands import MarkCommand
 from app.spans.filling import Filling
 from app.spans.strip import Strip
-from app.widgets.section import Section, empty, quiet
+from app.widgets.section import CountBox, Section, empty, quiet
 from app.widgets.text import caption
 from engine.errors import EngineError
 from engine.formats import read_take
@@ -104,9 +104,9 @@ class SpansSection(Section):
         self.visemes.setChecked(True)
         self.guide_button = QPushButton("Guide by a take…")
         self.guide_button.setToolTip("Another take of the same rate, such as a rough one from a webcam.")
-        self.guide_shift = QSpinBox(minimum=-999_999, maximum=999_999)
+        self.guide_shift = CountBox("frame", lowest=-999_999, highest=999_999)
         self.guide_shift.setToolTip("How many frames later in the guide the same moment lies.")
-        self._shift_row = _named("Guide is ahead by", self.guide_shift, "frames")
+        self._shift_row = _named("Guide is ahead by", self.guide_shift)
         self.fill_button, self.remove_button = QPushButton("Fill"), QPushButton("Unmark")
         self.fill_button.setProperty("primary", True)
         self.fill_button.setToolTip("Fill the chosen span (F)")
@@ -250,13 +250,12 @@ class SpansSection(Section):
             self.note.setVisible(bool(pins))
 
 
-def _named(title: str, box: QSpinBox, unit: str) -> QWidget:
-    """Return a number with its name before and its unit in it."""
+def _named(title: str, box: QSpinBox) -> QWidget:
+    """Return a number with its name before."""
     made = QWidget()
     row = QHBoxLayout(made)
     row.setContentsMargins(0, 0, 0, 0)
     row.addWidget(quiet(title), 1)
     row.addWidget(box)
-    box.setSuffix(f" {unit}")
     box.setAccessibleName(title)
     return made

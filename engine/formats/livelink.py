@@ -15,6 +15,7 @@ from engine.formats.content import content_of
 from engine.formats.decimals import floats
 from engine.formats.livelink_table import table
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take
+from engine.words import counted
 
 ROTATIONS = (
     "HeadYaw",
@@ -224,7 +225,9 @@ def _columns(header: list[str], path: Path) -> dict[str, int]:
     columns = {name: found[name.lower()] for name in (*SHAPES, *ROTATIONS) if name.lower() in found}
     missing = [name for name in SHAPES if name not in columns and name != "tongueOut"]
     if missing:
-        raise FormatError(f"{path.name} lacks the column {missing[0]} ({len(missing)} shapes are missing).", EXPECTED)
+        raise FormatError(
+            f"{path.name} lacks the column {missing[0]} ({counted(len(missing), 'shape')} missing).", EXPECTED
+        )
     return columns
 
 
@@ -289,7 +292,7 @@ def _clock(timecodes: list[bytes], fps: float | None) -> _Clock:
     if inserted > MAX_INSERTED_SHARE * len(timecodes):
         return fallback
     frame = np.concatenate([[0], np.cumsum(increments)])
-    notices = [f"{inserted} missed frames were filled in by interpolation."] if inserted else []
+    notices = [f"{counted(inserted, 'missed frame')} filled in by interpolation."] if inserted else []
     return _Clock(_snap(rate), frame, notices)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from engine.errors import FormatError
 from engine.formats.capture import TO_MM, Markers
 from engine.formats.content import require_file, unread
+from engine.words import counted
 
 EXPECTED = "Retake reads C3D files with labelled points."
 HEADER_BYTES = 512
@@ -27,7 +28,9 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     positions = np.ascontiguousarray(data[:3].transpose(2, 1, 0))
     labels = labels[: positions.shape[1]]
     if len(labels) != positions.shape[1] or not labels or not len(positions):
-        raise FormatError(f"{path.name} holds {positions.shape[1]} points but names {len(labels)}.", EXPECTED)
+        raise FormatError(
+            f"{path.name} holds {counted(positions.shape[1], 'point')} but names {len(labels)}.", EXPECTED
+        )
     residuals = np.asarray(content["data"]["meta_points"]["residuals"]).reshape(-1, data.shape[1], data.shape[2])[0].T
     gap = ~np.isfinite(positions).all(axis=2) | (residuals < 0) | (positions == 0).all(axis=2)
     positions[gap] = np.nan

@@ -9,6 +9,7 @@ from PySide6.QtGui import QMouseEvent
 from app.curves.tools.base import Tool
 from app.session.curve_table import CURVES
 from engine.take import Array
+from engine.words import counted
 
 HANDLE_PX = 9
 JOIN_FRAMES = 4
@@ -119,7 +120,7 @@ class ScaleTool(Tool):
         else:
             new_stop = int(np.clip(round(self.panel.frame_at(at)) + 1, start + 2, len(curve)))
             self.ask(self._lane, *scaled_in_time(curve, start, stop, new_stop))
-            self.panel.show_readout(f"{stop - start} → {new_stop - start} frames", at)
+            self.panel.show_readout(f"{stop - start} → {counted(new_stop - start, 'frame')}", at)
 
     def _box(self) -> QRectF:
         session = self.panel.session

@@ -15,6 +15,7 @@ import pygltflib
 from engine.errors import FormatError
 from engine.formats.characters.raw import MAX_VERTICES
 from engine.take import Array
+from engine.words import counted
 
 TYPES: dict[int, np.dtype[Any]] = {
     5120: np.dtype("<i1"),
@@ -47,7 +48,9 @@ class Accessors:
         """Return (count, 3) float64; raises `FormatError` where there are not as many as wanted."""
         accessor = self._accessor(index, "VEC3")
         if wanted is not None and accessor.count != wanted:
-            raise self._fault(f"has {accessor.count} vertices in its shape {what!r}, {wanted} in its mesh")
+            raise self._fault(
+                f"has {counted(accessor.count, 'vertex', 'vertices')} in its shape {what!r}, {wanted} in its mesh"
+            )
         if accessor.count > MAX_VERTICES:
             raise self._fault(f"declares {accessor.count} vertices; a character has at most {MAX_VERTICES}")
         values = self._values(accessor, 3).astype(np.float64)
@@ -61,7 +64,7 @@ class Accessors:
         """Return (count,) vertex numbers."""
         accessor = self._accessor(index, "SCALAR")
         if accessor.count > MAX_INDICES or self._type(accessor.componentType).kind != "u":
-            raise self._fault(f"declares {accessor.count} corners of faces in a form that cannot be read")
+            raise self._fault(f"declares {counted(accessor.count, 'corner')} of faces in a form that cannot be read")
         return self._values(accessor, 1)[:, 0].astype(np.int64)
 
     def _fault(self, what: str) -> FormatError:
@@ -96,7 +99,7 @@ class Accessors:
         count, indices, replaced = sparse.count, sparse.indices, sparse.values
         kind = self._type(indices.componentType)
         if not isinstance(count, int) or not 0 <= count <= len(values) or kind.kind != "u":
-            raise self._fault(f"corrects {count} values of {len(values)}")
+            raise self._fault(f"corrects {counted(count, 'value')} of {len(values)}")
         where = self._strided(indices.bufferView, indices.byteOffset or 0, count, 1, kind)[:, 0]
         if len(where) and where.max() >= len(values):
             raise self._fault(f"corrects value {where.max()} of {len(values)}")

@@ -14,6 +14,7 @@ from engine.formats.characters.landmarks import transfer_landmarks
 from engine.formats.characters.names import Match, match_names
 from engine.formats.characters.raw import RawCharacter
 from engine.take import SHAPE_INDEX, SHAPES, Array
+from engine.words import counted
 
 UNITS_MM = {"mm": 1.0, "cm": 10.0, "in": 25.4, "m": 1000.0}
 HEAD_MM = (150.0, 700.0)  # height of a head, from chin-to-crown alone to head and shoulders
@@ -120,7 +121,7 @@ def _notices(frame: Frame, rows: Sequence[Match], raw: RawCharacter) -> list[str
     doubtful = [row.source for row in rows if row.shape and not row.sure]
     if doubtful:
         sentences.append(
-            f"{len(doubtful)} names are like a shape but not alike enough to be taken: {', '.join(doubtful[:4])}."
+            f"{counted(len(doubtful), 'name')} like a shape but not alike enough to be taken: {', '.join(doubtful[:4])}."
         )
     return sentences
 
