@@ -17,7 +17,16 @@ FOLLOWED = re.compile(rf"^ (?:[a-z]+ ){{0,2}}(?:{NOUNS})\b")
 # What is shown to those who train networks and measure them, never to who edits a take.
 MEASURES = ("engine/evaluate", "engine/speed", "engine/performance", "engine/modelling", "app/bench")
 NAMES = ("name", "control", "undo", "fill", "frame", "text")
-SURELY_MANY = ("at most", "says it has", "of the file", "more than can be held", "per second", "len(SHAPES)} ")
+SURELY_MANY = (
+    "at most",
+    "MAX_FILES",
+    "frames a second",
+    "says it has",
+    "of the file",
+    "more than can be held",
+    "per second",
+    "len(SHAPES)} ",
+)
 
 
 def naive(path: Path) -> list[str]:

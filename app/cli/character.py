@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.reading import AUTOMATIC, Fps, ReadSides
 from app.printing import as_json as print_json
 from app.printing import say
 from engine.errors import EditError
@@ -131,6 +132,8 @@ def drive(
     neutral: Annotated[int, typer.Option(help="For markers: a frame in which the face is at rest.")] = 0,
     unit: Unit = None,
     up: Up = None,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Move a head that needs no shapes by points on its face."""
     import numpy as np
@@ -143,7 +146,7 @@ def drive(
     from engine.spacetime.layout import standard
 
     head = imported(mesh, unit=unit, up=up, names=[], landmarks=[]).character
-    performance = _source(markers, neutral=neutral, unit=None, fps=None)
+    performance = _source(markers, neutral=neutral, unit=None, fps=fps, sides=sides)
     if points is not None:
         followed = markers_layout.read(points, vertices=len(head.neutral))
     else:

@@ -15,7 +15,7 @@ from app.preview.encoding import codec_named
 from app.preview.renderer import Picture, Renderer, Shot
 from engine.character import Character, bundled
 from engine.formats.atomic import write_bytes
-from engine.take import Take
+from engine.take import Array, Take
 
 if TYPE_CHECKING:
     from av.video.stream import VideoStream
@@ -85,3 +85,16 @@ def write_movie(
             container.mux(stream.encode(av.VideoFrame.from_ndarray(np.ascontiguousarray(drawn), format="rgb24")))
         container.mux(stream.encode())
     write_bytes(path, [stored.getvalue()])
+
+
+def comparison(before: Array, after: Array, *, height: int) -> bytes:
+    """Return a PNG of two faces, weights (52,) each, and where the second one moved, in mm: before, after, difference."""
+    from PIL import Image
+
+    width = 2 * round(height * ASPECT / 2)
+    renderer = _renderer()
+    pair = renderer.draw(Shot((before, after), Camera(), (2 * width, height)))
+    moved = renderer.draw(Shot((after,), Camera(), (width, height), compared_to=before))
+    stored = io.BytesIO()
+    Image.fromarray(np.concatenate([pair, moved], axis=1)).save(stored, "PNG", optimize=True)
+    return stored.getvalue()

@@ -14,6 +14,7 @@ from app.actions.time import TimeActions
 from app.actions.view import ViewActions
 from app.actions.viseme import VisemeActions
 from app.retarget.actions import RetargetActions
+from app.review.actions import ReviewActions
 from app.settings import PRESETS
 from app.window.main_window import MainWindow
 
@@ -27,6 +28,7 @@ OWNERS = (
     ViewActions,
     VisemeActions,
     RetargetActions,
+    ReviewActions,
     SettingsActions,
 )
 
