@@ -55,11 +55,11 @@ def in_lines(heading: str, lines: Sequence[str]) -> str:
 
 def in_columns(groups: Mapping[str, Sequence[tuple[str, str]]]) -> str:
     """Return named groups of pairs as rich text, in columns of about one height; a group is not torn apart."""
-    columns, heights = [""] * COLUMNS, [0] * COLUMNS
-    for name, rows in groups.items():
-        column = heights.index(min(heights))
-        columns[column] += _table(name, rows)
-        heights[column] += 2 + len(rows)
+    places, heights = dict.fromkeys(groups, 0), [0] * COLUMNS
+    for name in sorted(groups, key=lambda name: -len(groups[name])):  # the longest first: the rest fills what is left
+        places[name] = heights.index(min(heights))
+        heights[places[name]] += 2 + len(groups[name])
+    columns = ["".join(_table(name, groups[name]) for name in groups if places[name] == at) for at in range(COLUMNS)]
     cells = "".join(f"<td style='padding-right: {3 * GRID}px'>{column}</td>" for column in columns)
     return f"<table><tr>{cells}</tr></table>"
 
