@@ -129,8 +129,8 @@ QToolButton[segment="true"]:checked {{ background: {c.edge}; color: {c.text}; }}
 QToolButton:disabled, QPushButton:disabled {{ color: {c.faint}; }}
 QToolButton[tool="true"] {{ padding: 5px 8px; }}
 QPushButton:checked {{ border: 1px solid {c.accent}; }}
-QToolButton:focus, QPushButton:focus, QCheckBox:focus, QSlider:focus, QDoubleSpinBox:focus {{
-  border: 1px solid {c.accent}; }}
+QToolButton:focus, QPushButton:focus, QCheckBox:focus, QSlider:focus {{ border: 1px solid {c.accent}; }}
+QToolButton:checked:focus, QPushButton[primary="true"]:focus {{ border: 1px solid {c.text}; }}
 QToolButton::menu-indicator {{ image: none; }}
 QFrame[line="true"] {{ background: {c.edge}; border: none; }}
 QSlider::groove:horizontal {{ height: 4px; background: {c.edge}; border-radius: 2px; }}
@@ -144,6 +144,7 @@ QCheckBox {{ border: 1px solid transparent; border-radius: 4px; padding: 2px; sp
 QDoubleSpinBox, QSpinBox, QLineEdit, QComboBox, QPlainTextEdit, QListView, QTreeView, QTableView {{
   background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; padding: 3px 6px;
   selection-background-color: {c.accent}; selection-color: {c.on_accent}; }}
+QDoubleSpinBox:focus, QSpinBox:focus, QLineEdit:focus, QComboBox:focus, QPlainTextEdit:focus {{ border-color: {c.accent}; }}
 QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
 QComboBox::drop-down {{ border: none; width: 20px; }}
 QComboBox::down-arrow {{ image: url("{ICONS}/down.svg"); width: 10px; height: 6px; }}

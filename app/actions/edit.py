@@ -15,6 +15,7 @@ from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
 from app.session.inference import Inference
 from app.spans.filling import Filling
+from engine.controls import CONTROLS
 from engine.errors import EngineError
 from engine.project.records import FILL
 from engine.take import Array
@@ -23,7 +24,9 @@ from engine.words import counted
 if TYPE_CHECKING:
     from engine.editing import Dragger, Patch
 
-EASE_FRAMES = 5
+EASE_S = 0.16  # beside a selection that is set to a value
+CLOSE_S, OPEN_S = 0.08, 0.14  # of a blink: lids fall faster than they rise
+RADIUS_STEP = 1.25
 
 
 class EditActions(QObject):
@@ -71,21 +74,25 @@ class EditActions(QObject):
 
     def close_here(self) -> None:
         """Bring lips or eyelids together on the selection, or around the playhead."""
-        if closes(self._session.lane):
-            self._set_curve(0.0, f"close {CURVES[self._session.lane].title}")
+        lane = self._session.lane
+        if closes(lane):
+            blinks = CONTROLS[CURVES[lane].column].area == "eyelids"
+            self._set_curve(0.0, f"close {CURVES[lane].title}", eases_s=(CLOSE_S, OPEN_S) if blinks else None)
 
     def set_value(self, value: float) -> None:
         """Set the active curve at the playhead, or over the selection, to a value."""
         curve = CURVES[self._session.lane]
         self._set_curve(value, f"set {curve.title} to {curve.shown(value)}")
 
-    def _set_curve(self, value: float, title: str) -> None:
+    def _set_curve(self, value: float, title: str, eases_s: tuple[float, float] | None = None) -> None:
         session = self._session
         if self._inference.busy:
             return
         frames = session.selection or (session.playhead, session.playhead + 1)
-        ease_frames = EASE_FRAMES if session.selection else session.radius_frames
-        start, asked = eased_to(session.curve(session.lane), frames, value, ease_frames=ease_frames)
+        ease_s = EASE_S if session.selection else session.radius_s
+        before, after = (seconds * session.take.fps for seconds in eases_s or (ease_s, ease_s))
+        curve = session.curve(session.lane)
+        start, asked = eased_to(curve, frames, value, before_frames=before, after_frames=after)
         self._curves.tool.ask(session.lane, start, asked)
         self._inference.finish(title, kind="set", inputs={"value": value, "frames": list(frames)})
 
@@ -164,11 +171,11 @@ class EditActions(QObject):
 
     def wider_brush(self) -> None:
         """Let the brush move more frames."""
-        self._session.set_brush(radius_frames=round(self._session.radius_frames * 1.25) + 1)
+        self._session.set_brush(radius_s=self._session.radius_s * RADIUS_STEP)
 
     def narrower_brush(self) -> None:
         """Let the brush move fewer frames."""
-        self._session.set_brush(radius_frames=round(self._session.radius_frames / 1.25) - 1)
+        self._session.set_brush(radius_s=self._session.radius_s / RADIUS_STEP)
 
     def drag_tool(self) -> None:
         """Work with the Drag tool."""

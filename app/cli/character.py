@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.performance import MARKER_HELP, pairs, performance_of
 from app.cli.reading import AUTOMATIC, Fps, ReadSides
 from app.printing import as_json as print_json
 from app.printing import say
@@ -14,6 +16,8 @@ from engine.errors import EditError
 from engine.words import counted
 
 if TYPE_CHECKING:
+    from app.cli.performance import Carried
+    from engine.character import Character
     from engine.formats.characters.assemble import Import
 
 Names = Annotated[
@@ -21,14 +25,19 @@ Names = Annotated[
 ]
 Landmarks = Annotated[list[str] | None, typer.Option("--landmark", help="Place a landmark by hand: name=vertex.")]
 Unit = Annotated[str | None, typer.Option(help="The file's unit, mm, cm, m or in; detected otherwise.")]
-Up = Annotated[str | None, typer.Option(help="The file's upward axis, y or z; detected otherwise.")]
+Up = Annotated[str | None, typer.Option(help="The file's upward axis: y, z, x, -y, -z or -x; detected otherwise.")]
+Facing = Annotated[
+    float | None,
+    typer.Option(help="Degrees that the face is turned to its left, from z, or from -y with z up; detected otherwise."),
+]
 
 
 def import_(
-    path: Annotated[Path, typer.Argument(help="A glTF or GLB file, a folder of OBJ files, or an ICT-FaceKit.")],
+    path: Annotated[Path, typer.Argument(help="A glTF, GLB or VRM file, a folder of OBJ files, or an ICT-FaceKit.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Where the character is written.")],
     unit: Unit = None,
     up: Up = None,
+    facing: Facing = None,
     names: Names = None,
     landmarks: Landmarks = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -37,13 +46,13 @@ def import_(
     from app.cli.tables import show
     from engine.character import save
 
-    made = imported(path, unit=unit, up=up, names=names or [], landmarks=landmarks or [])
+    made = imported(path, unit=unit, up=up, facing=facing, names=names or [], landmarks=landmarks or [])
     save(made.character, out)
     if as_json:
         print_json(_summary(made))
         return
     rows = [
-        {"in the file": row.source, "shape": row.shape, "likeness": row.likeness, "taken": row.sure}
+        {"in the file": row.source, "shape": row.shape if row.sure else "", "how": row.how, "likeness": row.likeness}
         for row in made.matches
     ]
     show(path.name, rows, as_json=False)
@@ -64,34 +73,31 @@ def landmarks_(
     from engine.formats.characters.landmarks import with_landmarks
     from engine.formats.characters.opening import character_of
 
-    places = {name: _vertex(name, vertex) for name, vertex in _pairs(landmarks or []).items()}
-    character, away_mm = with_landmarks(character_of(path), places)
+    head = character_of(path)
+    places = {name: head.vertex_of(_vertex(name, vertex)) for name, vertex in pairs(landmarks or []).items()}
+    character, away_mm = with_landmarks(head, places)
     save(character, out)
     rows = [
-        {"landmark": name, "vertex": vertex, "away_mm": away_mm[name], "by_hand": name in places}
+        {"landmark": name, "vertex": character.number_of(vertex), "away_mm": away_mm[name], "by_hand": name in places}
         for name, vertex in character.landmarks.items()
     ]
     show(path.name, rows, as_json=as_json)
 
 
-def imported(path: Path, *, unit: str | None, up: str | None, names: list[str], landmarks: list[str]) -> Import:
+def imported(
+    path: Path,
+    *,
+    unit: str | None = None,
+    up: str | None = None,
+    facing: float | None = None,
+    names: Sequence[str] = (),
+    landmarks: Sequence[str] = (),
+) -> Import:
     """Read a head and correct what was detected; raises `EngineError`."""
-    from engine.formats.characters import read
-    from engine.formats.characters.assemble import UNITS_MM, UP, Frame, assemble, detect_frame
-    from engine.formats.characters.names import corrected, match_names
+    from engine.formats.characters.reading import Reading, import_head
 
-    for value, known, what in ((unit, tuple(UNITS_MM), "unit"), (up, UP, "upward axis")):
-        if value is not None and value not in known:
-            raise EditError(f"There is no {what} called {value!r}.", f"Use one of: {', '.join(known)}.")
-    raw = read(path)
-    found = detect_frame(raw)
-    places = {name: _vertex(name, vertex) for name, vertex in _pairs(landmarks).items()}
-    return assemble(
-        raw,
-        frame=Frame(unit or found.unit, up or found.up),
-        matches=corrected(match_names(raw.shapes), _pairs(names)),
-        landmarks=places,
-    )
+    places = {name: _vertex(name, vertex) for name, vertex in pairs(list(landmarks)).items()}
+    return import_head(path, Reading(unit or "", up or "", facing, pairs(list(names))), places)
 
 
 def _summary(made: Import) -> dict[str, object]:
@@ -99,21 +105,14 @@ def _summary(made: Import) -> dict[str, object]:
         "vertices": len(made.character.neutral),
         "unit": made.frame.unit,
         "up": made.frame.up,
-        "shapes": [{"source": row.source, "shape": row.shape, "likeness": row.likeness} for row in made.matches],
+        "facing_deg": made.frame.facing_deg,
+        "shapes": [
+            {"source": row.source, "shape": row.shape, "likeness": row.likeness, "how": row.how} for row in made.matches
+        ],
         "landmarks": made.character.landmarks,
         "landmark_mm": made.landmark_mm,
         "notices": list(made.notices),
     }
-
-
-def _pairs(texts: list[str]) -> dict[str, str]:
-    pairs = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip():
-            raise EditError(f"{text!r} is not a name and a value.", "Write them with = between.")
-        pairs[name.strip()] = value.strip()
-    return pairs
 
 
 def _vertex(name: str, text: str) -> int:
@@ -132,37 +131,67 @@ def drive(
     neutral: Annotated[int, typer.Option(help="For markers: a frame in which the face is at rest.")] = 0,
     unit: Unit = None,
     up: Up = None,
+    facing: Facing = None,
+    still: Annotated[bool, typer.Option("--still", help="For markers: leave the head's own motion out.")] = False,
+    marker: Annotated[list[str] | None, typer.Option("--marker", help=MARKER_HELP)] = None,
     fps: Fps = None,
     sides: ReadSides = AUTOMATIC,
 ) -> None:
-    """Move a head that needs no shapes by points on its face."""
+    """Move a head that needs no shapes by points on its face; the head turns and goes as the markers do."""
     import numpy as np
 
-    from app.cli.spacetime import _source
-    from engine.formats import markers_layout
-    from engine.formats.characters.animation import write
+    from engine.formats.characters.animation import require_ending, write
     from engine.formats.characters.moving import MovingMesh
     from engine.manifold.drive import MeshDriver, aim
-    from engine.spacetime.layout import standard
 
-    head = imported(mesh, unit=unit, up=up, names=[], landmarks=[]).character
-    performance = _source(markers, neutral=neutral, unit=None, fps=fps, sides=sides)
-    if points is not None:
-        followed = markers_layout.read(points, vertices=len(head.neutral))
-    else:
-        layout = standard(head)
-        followed = dict(zip(layout.names, (int(vertex) for vertex in layout.vertices), strict=True))
-    shared = [name for name in followed if name in performance.names]
+    require_ending(out)
+    head = _head(mesh, unit=unit, up=up, facing=facing)
+    performance = performance_of(
+        markers,
+        neutral=neutral,
+        unit=None,
+        fps=fps,
+        sides=sides,
+        changes=pairs(marker or []),
+        placed=points is not None,
+    )
+    performance.show()
+    source = performance.source
+    followed = _followed(head, performance, points)
+    shared = [name for name in followed if name in source.names]
     if len(shared) < 4:
         raise EditError(f"Only {len(shared)} of the mesh's points have a marker of their name.", "Name them alike.")
-    columns = [performance.names.index(name) for name in shared]
+    columns = [source.names.index(name) for name in shared]
     rest = head.neutral.astype(np.float64)
     driver = MeshDriver(rest, head.triangles, np.array([followed[name] for name in shared]))
-    aimed = aim(rest[driver.points], performance.neutral[columns], performance.displacements[:, columns])
-    frames = np.stack([frame.astype(np.float32) for frame in driver.frames(aimed)])
-    write(MovingMesh(rest, head.triangles, frames, performance.take.fps), out)
-    moved = f"{counted(len(rest), 'vertex', 'vertices')} by {counted(len(shared), 'point')}"
-    say(f"Moved {moved} over {counted(len(frames), 'frame')}. Written to {out}.")
+    aimed, laid = aim(rest[driver.points], source.neutral[columns], source.displacements[:, columns])
+    if source.head is not None and not still:
+        motion = source.head.seen_along(laid.turn[0], scale=float(laid.scale[0]), shift=laid.shift[0])
+        aimed = motion.apply(aimed)
+    posed = (head.as_in_file(frame.astype(np.float32)) for frame in driver.frames(aimed))
+    moving = MovingMesh(head.as_in_file(rest), head.triangles_in_file, np.stack(list(posed)), source.take.fps)
+    write(moving, out)
+    moved = f"{counted(len(moving.rest), 'vertex', 'vertices')} by {counted(len(shared), 'point')}"
+    say(f"Moved {moved} over {counted(len(aimed), 'frame')}. Written to {out}.")
+
+
+def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None) -> Character:
+    """Read a head of ours or of another program as corrected; raises `EngineError`."""
+    from engine.formats.characters.opening import character_of
+    from engine.formats.characters.reading import Reading
+
+    return character_of(path, Reading(unit or "", up or "", facing))
+
+
+def _followed(head: Character, performance: Carried, points: Path | None) -> dict[str, int]:
+    """Return which vertex of a head follows which marker, by a file or by what the markers were taken for."""
+    from engine.formats import markers_layout
+    from engine.spacetime.layout import standard
+
+    if points is not None:
+        return markers_layout.read(points, head=head)
+    layout = performance.layout(head) or standard(head)
+    return dict(zip(layout.names, (int(vertex) for vertex in layout.vertices), strict=True))
 
 
 def register(app: typer.Typer) -> None:

@@ -10,6 +10,7 @@ from engine.errors import EditError
 from engine.words import counted
 
 if TYPE_CHECKING:
+    from app.cli.performance import Carried
     from engine.character import Character
     from engine.formats.labels import LabelFile
     from engine.spacetime.source import Source
@@ -31,9 +32,9 @@ def suggest(performance: Source, count: int, labels: Path | None) -> list[int]:
     return suggest_frames(_features(performance), count, labelled=known)
 
 
-def retarget(performance: Source, character: Path | None, labels: Path | None) -> tuple[Take, Character]:
+def retarget(performance: Carried, character: Path | None, labels: Path | None) -> tuple[Take, Character]:
     """Return the take that the labels make of a performance, and the head it is for; raises `EngineError`."""
-    from engine.character import bundled
+    from engine.character import bundled, without_lacking
     from engine.formats.characters.opening import character_of
     from engine.manifold.retarget import retarget_weights
     from engine.spacetime.retarget import retarget as carry
@@ -43,9 +44,10 @@ def retarget(performance: Source, character: Path | None, labels: Path | None) -
     asked = _read(labels)
     path = character or asked.target
     target = bundled() if path is None else character_of(path)
-    guess = carry(performance, target) if performance.is_capture else performance.take
+    source = performance.source
+    guess = carry(source, target, layout=performance.layout(target)) if source.is_capture else source.take
     poses: dict[int, Mapping[str, float] | Array] = dict(asked.labels)
-    return retarget_weights(guess, poses, source=_features(performance)), target
+    return without_lacking(retarget_weights(guess, poses, source=_features(source)), target), target
 
 
 def _read(path: Path) -> LabelFile:

@@ -9,16 +9,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli import labelled
+from app.cli.performance import MARKER_HELP, Carried, pairs, performance_of
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from app.printing import say
 from engine.errors import EditError
-from engine.formats.content import require_file, unread
 from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.character import Character
     from engine.spacetime.matching import Matching
-    from engine.spacetime.source import Source
     from engine.take import Take
 
 STRONGEST = 1e12  # beyond this the system cannot be solved
@@ -93,16 +92,31 @@ def retarget(
     closure: Annotated[float | None, typer.Option(help="How firmly lips and lids meet where the source's do.")] = None,
     unbounded: Annotated[bool, typer.Option("--unbounded", help="Let weights leave 0..1.")] = False,
     write_sides: WrittenSides = SAME,
+    marker: Annotated[list[str] | None, typer.Option("--marker", help=MARKER_HELP)] = None,
 ) -> None:
     """Carry markers or a take to another character."""
+    from engine.formats import format_of
+
     if method is not Method.MANIFOLD and (labels is not None or suggest is not None):
         raise EditError("Labelled frames belong to the other method.", "Add --method manifold.")
-    performance = _source(source, neutral=neutral, unit=unit, fps=fps, sides=sides)
-    if suggest is not None:
-        say("\n".join(map(str, labelled.suggest(performance, suggest, labels))))
-        return
-    if out is None:
+    if out is None and suggest is None:
         raise EditError("Say where the new take is written.", "Name it with -o.")
+    if out is not None:
+        format_of(out)  # an ending that cannot be written is told before the work, not after it
+    performance = performance_of(
+        source,
+        neutral=neutral,
+        unit=unit,
+        fps=fps,
+        sides=sides,
+        changes=pairs(marker or []),
+        placed=landmarks is not None,
+    )
+    if suggest is not None:
+        say("\n".join(map(str, labelled.suggest(performance.source, suggest, labels))))
+        return
+    assert out is not None
+    performance.show()
     if method is Method.MANIFOLD:
         made, target = labelled.retarget(performance, character, labels)
     else:
@@ -127,7 +141,7 @@ def _matching(*, alpha: float | None, beta: float | None, closure: float | None,
 
 
 def _carried(
-    performance: Source, character: Path | None, landmarks: Path | None, matching: Matching
+    performance: Carried, character: Path | None, landmarks: Path | None, matching: Matching
 ) -> tuple[Take, Character]:
     from engine.character import bundled
     from engine.formats import markers_layout
@@ -136,30 +150,9 @@ def _carried(
     from engine.spacetime.retarget import retarget as carry
 
     target = bundled() if character is None else character_of(character)
-    layout = None
-    if landmarks is not None:
-        layout = named(markers_layout.read(landmarks, vertices=len(target.neutral)))
-    return carry(performance, target, layout=layout, matching=matching), target
-
-
-def _source(path: Path, *, neutral: int, unit: str | None, fps: float | None, sides: str) -> Source:
-    from engine.character import bundled
-    from engine.formats import markers
-    from engine.spacetime.source import from_markers, from_take
-
-    if path.suffix.lower() in markers.ENDINGS and not _is_take(path):
-        return from_markers(markers.read(path, unit=unit, fps=fps), neutral_frame=neutral)
-    return from_take(open_take(path, fps, sides), bundled())
-
-
-def _is_take(path: Path) -> bool:
-    """Whether a file begins as a Live Link Face take does; a CSV may also hold markers."""
-    require_file(path)
-    try:
-        with path.open("rb") as file:
-            return file.read(16).removeprefix(b"\xef\xbb\xbf").lower().startswith(b"timecode")
-    except OSError as error:
-        raise unread(path, error) from error
+    given = named(markers_layout.read(landmarks, head=target)) if landmarks is not None else None
+    layout = given or performance.layout(target)
+    return carry(performance.source, target, layout=layout, matching=matching), target
 
 
 def assignments(text: str) -> dict[str, float]:

@@ -83,7 +83,7 @@ def edit(
         raise EditError("Say what becomes of the control.", "Give one of --set, --add or --scale.")
     opened = open_take(take, fps, sides)
     column, (start, stop) = control_index(control), parse_frames(frames, opened)
-    patch = edit_control(opened, control, (start, stop), *given[0], exact_curve=exact, follow=follow)
+    patch = edit_control(opened, control, (start, stop), *given[0], exact_curve=exact, follow=follow).settled(opened)
     save_take(patch.apply(opened), out, write_sides)
     measured = bundled_measurer().measure(opened.weights[patch.start : patch.stop])
     reached = patch.reached[start - patch.start : stop - patch.start, column]

@@ -10,12 +10,12 @@ from PySide6.QtGui import QColor, QFont, QPainter
 from app.curves import removed
 from app.curves.line import Line
 from app.curves.peaks import Rows, Thinned
+from app.curves.places import GUTTER_PX
 from app.curves.removed import Removed
 from app.session.curve_table import CURVES, FIRST_WEIGHT
 from app.theme import GRID, Palette
 from engine.take import Array, Mask
 
-GUTTER_PX = 150
 INDENT_PX = 11
 REMOVED, CROWDED_PX = "removed ", 48
 LEAST_WEIGHT, LEAST_MM = 0.01, 0.1  # the smallest scale of what is removed
@@ -32,7 +32,6 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         self.active, self.value, self.range = False, 0.0, (0.0, 1.0)
         self.spare = 0.0  # the part of the lane's height below its range, for what is removed
         self.removed, self.removed_colour = "", QColor("white")
-        self.setFixedWidth(GUTTER_PX)
 
     def paint(self, painter: QPainter, *_: object) -> None:
         """Draw name and numbers."""
@@ -92,7 +91,7 @@ class Lane:
         self.key, self.curve = key, CURVES[key]
         self.gutter = Gutter(key)
         self.view = pg.ViewBox(enableMouse=False, enableMenu=False, defaultPadding=0.0)
-        self.view.setMinimumHeight(28)
+        self.view.setZValue(0)  # pyqtgraph puts it beneath everything
         self.original, self.asked, self.reached = (Line() for _ in range(3))
         self.dot = pg.ScatterPlotItem(size=9)
         for item in (self.original, self.asked, self.reached, self.dot):
@@ -100,18 +99,32 @@ class Lane:
         self.dot.hide()
         self.removed = Removed(self.view, LEAST_WEIGHT if self.curve.is_weight else LEAST_MM)
         self.range = self._fitted = (0.0, 1.0)
+        self._box = QRectF(GUTTER_PX, 0.0, 1.0, 1.0)
         self._curves: tuple[Thinned, Thinned, Thinned | None] | None = None  # original, reached, asked
 
-    def paint_with(self, colours: Palette) -> None:
-        """Take on a theme's colours."""
+    def place(self, box: QRectF) -> None:
+        """Put the curves into a box of the scene, and the name beside it."""
+        self._box = box
+        self.view.setGeometry(box)
+        self.gutter.setGeometry(QRectF(0.0, box.top(), GUTTER_PX, box.height()))
+
+    def put_away(self) -> None:
+        """Take it off the screen, to be shown again; what it drew is not kept up to date meanwhile."""
+        self.view.hide()
+        self.gutter.hide()
+        self.dot.hide()
+        self._curves = None
+
+    def paint_with(self, colours: Palette, line_px: float = 1.0) -> None:
+        """Take on a theme's colours; lines are `line_px` pixels of the screen wide, which may be finer than the window's."""
         weight = self.key >= FIRST_WEIGHT
         colour = QColor(colours.quiet if weight else colours.lanes[self.key % len(colours.lanes)])
-        self.original.set_pen(pg.mkPen(colours.faint, width=1))
-        self.asked.set_pen(pg.mkPen(colours.text, width=1, style=Qt.PenStyle.DashLine))
-        self.reached.set_pen(pg.mkPen(colour, width=1))
-        self.removed.paint_with(colours)
+        self.original.set_pen(pg.mkPen(colours.faint, width=line_px))
+        self.asked.set_pen(pg.mkPen(colours.text, width=line_px, style=Qt.PenStyle.DashLine))
+        self.reached.set_pen(pg.mkPen(colour, width=line_px))
+        self.removed.paint_with(colours, line_px)
         self.dot.setBrush(pg.mkBrush(colour))
-        self.dot.setPen(pg.mkPen(colours.text, width=1))
+        self.dot.setPen(pg.mkPen(colours.text, width=line_px))
         self.gutter.colour, self.gutter.quiet = colour, QColor(colours.quiet)
         self.gutter.text_colour = QColor(colours.text)
         self.gutter.removed_colour = QColor(colours.warning)
@@ -190,11 +203,11 @@ class Lane:
 
     @property
     def _columns(self) -> int:
-        return max(64, int(self.view.width()))
+        return max(64, int(self._box.width()))
 
     def scene_box(self) -> QRectF:
         """Return the box that the curves are drawn in, in the scene."""
-        return QRectF(self.view.sceneBoundingRect())
+        return QRectF(self._box)
 
     def frame_at(self, x: float) -> float:
         """Return the fractional frame at a scene position."""

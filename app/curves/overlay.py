@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QGraphicsItem, QStyleOptionGraphicsItem, QWidget
 from app.theme import Palette
 
 Marks = list[tuple[float, float]]  # half-open ranges of frames
+RING_PX = 4.0  # radius of the corners
 
 
 class Overlay(QGraphicsItem):
@@ -33,6 +34,11 @@ class Overlay(QGraphicsItem):
         """Cover all lanes."""
         return self._area()
 
+    def moved(self) -> None:
+        """Draw anew where the lanes are by now."""
+        self.prepareGeometryChange()
+        self.update()
+
     def paint(self, painter: QPainter, option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
         """Draw in the theme's colours."""
         if self.colours is not None:
@@ -50,7 +56,7 @@ class Underlay(Overlay):
         self.spans: Marks = []
         self.selection: tuple[float, float] | None = None
         self.brush_reach: tuple[float, float] | None = None
-        self.brush_box = QRectF()
+        self.brush_box: Callable[[], QRectF] = QRectF
 
     def _draw(self, painter: QPainter, area: QRectF, colours: Palette) -> None:
         """Draw spans hatched and tinted, the selection and the brush tinted."""
@@ -71,7 +77,7 @@ class Underlay(Overlay):
         if self.brush_reach is not None:
             reach = QColor(colours.accent)
             reach.setAlphaF(0.09)
-            painter.fillRect(self._box(self.brush_reach, self.brush_box), reach)
+            painter.fillRect(self._box(self.brush_reach, self.brush_box()), reach)
 
     def _box(self, frames: tuple[float, float], area: QRectF) -> QRectF:
         left, right = self._x_of(frames[0] - 0.5), self._x_of(frames[1] - 0.5)
@@ -98,3 +104,15 @@ class Playhead(Overlay):
             painter.setBrush(QColor(colours.accent))
             for handle in self.handles:
                 painter.drawRect(QRectF(handle.x() - 4, handle.y() - 4, 8, 8))
+
+
+class FocusRing(Overlay):
+    """A line around the lane that is worked on, while keys go to it."""
+
+    def __init__(self, area: Callable[[], QRectF], x_of: Callable[[float], float]) -> None:
+        super().__init__(area, x_of, 20)
+
+    def _draw(self, painter: QPainter, area: QRectF, colours: Palette) -> None:
+        if not area.isNull():
+            painter.setPen(QPen(QColor(colours.accent), 1))
+            painter.drawRoundedRect(area.adjusted(1.5, 0.5, -0.5, -0.5), RING_PX, RING_PX)

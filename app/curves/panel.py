@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
-import pyqtgraph as pg
-from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QContextMenuEvent, QMouseEvent, QResizeEvent, QWheelEvent
+from collections.abc import Callable, Sequence
+from functools import partial
 
-from app.curves.lane import GUTTER_PX, Lane
-from app.curves.overlay import Playhead, Underlay
-from app.curves.peaks import on_screen
+import pyqtgraph as pg
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSizeF, Qt, Signal
+from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QMouseEvent, QResizeEvent, QWheelEvent
+
+from app.curves.drawing import draw_edits, draw_removed, show_frames, take_curves
+from app.curves.lane import Lane
+from app.curves.overlay import FocusRing, Playhead, Underlay
+from app.curves.places import GUTTER_PX, Growth, boxes
 from app.curves.tools import make_tools
 from app.curves.tools.base import Tool
 from app.session import Change, Session
 from app.session.inference import Inference
-from app.theme import GRID, Palette
+from app.theme import Palette
 from app.widgets.text import Label
 
-ACTIVE_STRETCH, STRETCH = 24, 10
 WHEEL_STEP = 1.2
 MIN_LANE_PX = 40
 EXPANDER = 0.75  # the part of the gutter whose click shows or hides the weights below
 
 
-class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
+class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
     """One lane per curve: the controls, and the weights under those that are expanded.
 
     Parameters
@@ -39,22 +42,23 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.setAntialiasing(True)
         self.setMouseTracking(True)
         self.setAccessibleName("Curves")
-        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
-        self.ci.layout.setContentsMargins(0, 0, GRID, 0)
-        self.ci.layout.setVerticalSpacing(6)
-        self.ci.layout.setHorizontalSpacing(0)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._colours = colours
         self.lanes: list[Lane] = []
-        self._made: dict[int, Lane] = {}  # by key; a lane that leaves the scene is kept: Qt may yet paint it once
+        self._made: dict[int, Lane] = {}  # by key; a lane that leaves the screen is kept: Qt may yet paint it once
+        self._growth = Growth()
+        self._growth.moved.connect(self._place)
         self._underlay = Underlay(self._lanes_box, self._x_of)
         self._playhead = Playhead(self._lanes_box, self._x_of)
-        self.scene().addItem(self._underlay)
-        self.scene().addItem(self._playhead)
+        self._ring = FocusRing(self._active_box, self._x_of)
+        for item in (self._underlay, self._playhead, self._ring):
+            self.scene().addItem(item)
         self.readout = Label("", self)
         self.readout.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.readout.hide()
         self.tools = make_tools(self)
         self._pan_from: tuple[QPointF, tuple[float, float]] | None = None
+        self._named: int | None = None  # the lane whose name is pressed
         session.changed.connect(self._on_change)
         self._on_change(Change.TAKE)
         self.paint_with(colours)
@@ -64,44 +68,58 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         """The tool that the mouse goes to."""
         return self.tools[self.session.tool]
 
+    @property
+    def moving(self) -> bool:
+        """Whether lanes are on their way to other places."""
+        return self._growth.moving
+
     def lane(self, key: int) -> Lane:
         """Return the lane of a curve on screen, an index into CURVES."""
-        return self.lanes[self.session.lanes.index(key)]
+        return self._made[key]
 
     def paint_with(self, colours: Palette) -> None:
         """Take on a theme's colours."""
         self._colours = colours
         self.setBackground(colours.panel)
-        for lane in self.lanes:
-            lane.paint_with(colours)
-        self._underlay.colours = self._playhead.colours = colours
+        self._paint_lanes()
+        self._underlay.colours = self._playhead.colours = self._ring.colours = colours
         self.readout.setStyleSheet(
             f"background: {colours.raised}; color: {colours.text}; border: 1px solid {colours.edge};"
             "border-radius: 4px; padding: 3px 6px;"
         )
+
+    def _paint_lanes(self) -> None:
+        for lane in self.lanes:
+            lane.paint_with(self._colours, self.devicePixelRatioF())  # pens that do not scale would be hairlines
 
     # --- drawing
 
     def _on_change(self, change: Change) -> None:
         kinds = Change
         for cause, step in (
-            (kinds.TAKE, self._let_go),
+            (kinds.TAKE | kinds.LANES, self._let_go),
             (kinds.TAKE | kinds.LANES, self._lay_lanes),
-            (kinds.TAKE | kinds.LANES | kinds.CURVES, self._take_curves),
-            (kinds.TAKE | kinds.LANES | kinds.CURVES, self._fit_values),
+            (kinds.TAKE | kinds.LANES | kinds.CURVES, partial(self._draw, take_curves)),
             (kinds.TAKE | kinds.LANES | kinds.LANE, self._arrange),
-            (kinds.TAKE | kinds.LANES | kinds.VIEW, self._show_frames),
-            (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT, self._draw_edits),
-            (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT | kinds.TOOL, self._draw_removed),
+            (kinds.TAKE | kinds.LANES | kinds.VIEW, partial(self._draw, show_frames)),
+            (kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT, partial(self._draw, draw_edits)),
+            (
+                kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT | kinds.TOOL,
+                partial(self._draw, draw_removed),
+            ),
             (kinds.TAKE | kinds.LANES | kinds.PLAYHEAD | kinds.CURVES | kinds.DRAFT, self._show_playhead),
             (kinds.LANES | kinds.CURVES | kinds.DRAFT, self.tool.leave),  # what it showed is not there any more
             (kinds.DRAFT, self.tool.refresh),
             (kinds.TAKE | kinds.TOOL, self._take_up_tool),
             (kinds.TAKE | kinds.LANES | kinds.TOOL | kinds.VIEW | kinds.SELECTION | kinds.MARKS, self._show_marks),
             (kinds.CURVES, self._show_marks),  # a fill that is kept is no span to work on any more
+            (kinds.VIEW | kinds.SELECTION, self._follow),
         ):
             if change & cause:
                 step()
+
+    def _draw(self, step: Callable[[Sequence[Lane], Session], None]) -> None:
+        step(self.lanes, self.session)
 
     def _show_marks(self) -> None:
         self._underlay.selection = self.session.selection
@@ -110,7 +128,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self._playhead.update()
 
     def _let_go(self) -> None:
-        """Drop a gesture whose take is gone: its frames may not be there any more."""
+        """Drop a gesture whose take or lane is gone: it may not be there any more."""
         if self.tool.busy:
             self.tool.cancel()
 
@@ -126,68 +144,43 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         wanted = self.session.lanes
         if [lane.key for lane in self.lanes] == wanted:
             return
-        self.ci.clear()
+        for lane in self.lanes:
+            if lane.key not in wanted:
+                lane.put_away()
         for key in wanted:
             if key not in self._made:
                 self._made[key] = Lane(key)
+                self.scene().addItem(self._made[key].gutter)
+                self.scene().addItem(self._made[key].view)
         self.lanes = [self._made[key] for key in wanted]
-        for row, lane in enumerate(self.lanes):
-            lane.paint_with(self._colours)
-            self.ci.addItem(lane.gutter, row, 0)
-            self.ci.addItem(lane.view, row, 1)
-        self._take_curves()  # growing draws them already
-        self.setMinimumHeight(MIN_LANE_PX * len(self.lanes))
-
-    def _take_curves(self) -> None:
         for lane in self.lanes:
-            lane.take_curves(
-                self.session.original_curve(lane.key),
-                self.session.curve(lane.key),
-                self.session.asked_curve(lane.key),
-                touched=self.session.touched,
-            )
+            lane.gutter.show()
+            lane.view.show()
+        self._paint_lanes()
 
-    def _fit_values(self) -> None:
-        for lane in self.lanes:
-            lane.fit()
+    def _place(self) -> None:
+        """Put every lane where the panel's size has it."""
+        size = QSizeF(self.size())
+        places = boxes(size, [lane.key for lane in self.lanes], self._growth.shares)
+        for lane, box in zip(self.lanes, places, strict=True):
+            lane.place(box)
+        for item in (self._underlay, self._playhead, self._ring):
+            item.moved()
+        self._follow()
+
+    def _follow(self) -> None:
+        """Let what the tool shows be where the lanes are."""
+        self.tool.placed()
 
     def _arrange(self) -> None:
-        for row, lane in enumerate(self.lanes):
-            lane.gutter.active = lane.key == self.session.lane
+        keys, active = [lane.key for lane in self.lanes], self.session.lane
+        for lane in self.lanes:
+            lane.gutter.active = lane.key == active
             lane.gutter.expanded = lane.key in self.session.expanded
-            self.ci.layout.setRowStretchFactor(row, ACTIVE_STRETCH if lane.gutter.active else STRETCH)
             lane.gutter.update()
-        self.ci.layout.activate()
-
-    def _show_frames(self) -> None:
-        start, stop = on_screen(len(self.session.take), self.session.view)
-        for lane in self.lanes:
-            lane.show_frames(*self.session.view)
-            lane.draw_original((start, stop))
-
-    def _draw_edits(self) -> None:
-        session, draft = self.session, self.session.draft
-        start, stop = on_screen(len(session.take), session.view)
-        for lane in self.lanes:
-            drafted = session.draft_curve(lane.key)
-            if draft is None or drafted is None:
-                lane.draw_edit((start, stop))
-            else:
-                asked = None if lane.curve.is_weight else (draft.asked[:, lane.curve.column], draft.start)
-                lane.draw_edit((start, stop), (drafted, draft.start), asked)
-
-    def _draw_removed(self) -> None:
-        session, draft = self.session, self.session.draft
-        wanted = session.tool == "clean" and session.shows_removed
-        visible = on_screen(len(session.take), session.view)
-        for lane in self.lanes:
-            drafted = session.draft_curve(lane.key) if wanted else None
-            if draft is None or drafted is None:
-                lane.hide_removed()
-                continue
-            rows = slice(draft.start, draft.stop)
-            kept = ~session.take.lost[rows]
-            lane.draw_removed(session.curve(lane.key)[rows] - drafted, draft.start, kept=kept, visible=visible)
+        self._ring.moved()
+        self._growth.choose(keys, active, at_once=not self.isVisible())
+        self.setMinimumHeight(MIN_LANE_PX * len(self.lanes))
 
     def _show_playhead(self) -> None:
         frame = self.session.playhead
@@ -200,7 +193,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     def show_brush(self, lane: Lane | None, frames: tuple[float, float] | None) -> None:
         """Tint the frames that a tool would move, in one lane."""
         self._underlay.brush_reach = frames
-        self._underlay.brush_box = lane.scene_box() if lane else QRectF()
+        self._underlay.brush_box = lane.scene_box if lane else QRectF
         self._underlay.update()
 
     def show_dot(self, lane: Lane | None, frame: float = 0.0, value: float = 0.0) -> None:
@@ -226,6 +219,13 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
 
     # --- geometry
 
+    def _active_box(self) -> QRectF:
+        """Return the box of the lane that is worked on, its name included; an empty one without the keyboard."""
+        shown = next((lane for lane in self.lanes if lane.key == self.session.lane), None)
+        if shown is None or not self.hasFocus():
+            return QRectF()
+        return shown.scene_box().adjusted(-GUTTER_PX, 0, 0, 0)
+
     def _lanes_box(self) -> QRectF:
         return self.lanes[0].scene_box().united(self.lanes[-1].scene_box())
 
@@ -250,23 +250,24 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
     # --- the mouse
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Give the press to the tool; the middle button pans."""
+        """Give the press to the tool; the middle button pans; nothing moves under the pointer until it is let go."""
+        self._growth.hold()
         if event.button() == Qt.MouseButton.MiddleButton:
             self._pan_from = (event.position(), self.session.view)
             return
         lane = self.lane_at(event.position())
         if event.button() != Qt.MouseButton.LeftButton or lane is None:
             return
-        if event.position().x() < GUTTER_PX:
-            self.session.choose_lane(lane)
-            if event.position().x() < GUTTER_PX * EXPANDER:
-                self.session.expand(lane)
-            return
         self.session.choose_lane(lane)
-        self.tool.press(lane, event)
+        if event.position().x() < GUTTER_PX:
+            self._named = lane
+        else:
+            self.tool.press(lane, event)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Pan, or let the tool move."""
+        if not event.buttons():
+            self._released()  # elsewhere, if there was a press
         if self._pan_from is not None:
             origin, (first, last) = self._pan_from
             shift = (origin.x() - event.position().x()) / max(1.0, self._lanes_box().width()) * (last - first)
@@ -281,10 +282,20 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End what the press began."""
+        named, self._named = self._named, None
         if event.button() == Qt.MouseButton.MiddleButton:
             self._pan_from = None
         elif event.button() == Qt.MouseButton.LeftButton:
             self.tool.release(event)
+            at = event.position()
+            if named is not None and at.x() < GUTTER_PX * EXPANDER and self.lane_at(at) == named:
+                self.session.expand(named)
+        if not event.buttons():
+            self._released()
+
+    def _released(self) -> None:
+        self._pan_from = self._named = None
+        self._growth.release()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         """Offer what can be done with a curve and go there; with the menu key, at the playhead of the active lane."""
@@ -323,9 +334,28 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             return
         event.accept()
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        """Thin the curves for the new width."""
+    # --- the panel itself
+
+    def resizeEvent(self, event: QResizeEvent | None) -> None:
+        """Place the lanes, and thin the curves, for the new size."""
         super().resizeEvent(event)
-        if self.isVisible():
-            self._show_frames()
-            self._draw_edits()
+        if event is not None:  # pyqtgraph sends none while it is built
+            self._place()
+            for step in (show_frames, draw_edits, draw_removed):
+                self._draw(step)
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        """Show where the keys go."""
+        super().focusInEvent(event)
+        self._ring.moved()
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        """Show that they go elsewhere."""
+        super().focusOutEvent(event)
+        self._ring.moved()
+
+    def event(self, event: QEvent) -> bool:
+        """Draw lines as wide as before on a screen of another resolution."""
+        if event.type() == QEvent.Type.DevicePixelRatioChange:
+            self._paint_lanes()
+        return bool(super().event(event))

@@ -38,13 +38,13 @@ class Removed:
             view.addItem(item, ignoreBounds=True)
         self.hide()
 
-    def paint_with(self, colours: Palette) -> None:
-        """Take on a theme's colours."""
+    def paint_with(self, colours: Palette, line_px: float) -> None:
+        """Take on a theme's colours; lines are `line_px` pixels of the screen wide."""
         colour, tint = QColor(colours.warning), QColor(colours.warning)
         tint.setAlphaF(TINT)
-        self.area.setPen(pg.mkPen(colour, width=1))
+        self.area.setPen(pg.mkPen(colour, width=line_px))
         self.area.setBrush(pg.mkBrush(tint))
-        self.line.setPen(pg.mkPen(colours.edge, width=1))
+        self.line.setPen(pg.mkPen(colours.edge, width=line_px))
 
     def hide(self) -> None:
         """Show nothing."""

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QCheckBox, QSpinBox
+from PySide6.QtWidgets import QCheckBox, QDoubleSpinBox, QSpinBox
 
-from app.session import Change, Session
-from app.widgets.section import CountBox, Section, slider
+from app.session import RADII_S, Change, Session
+from app.widgets.section import Section, slider
+
+STEP_S, SLIDER_STEPS = 0.02, 150  # of the slider: to three seconds, further by typing
 
 
 class BrushSection(Section):
@@ -16,9 +18,9 @@ class BrushSection(Section):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "Brush")
-        self.radius = CountBox("frame", lowest=1, highest=300)
-        self.radius.setToolTip("How many frames on either side follow. Turn the wheel while dragging to change it.")
-        self._radius_slider = slider(1, 120)
+        self.radius = QDoubleSpinBox(minimum=RADII_S[0], maximum=RADII_S[1], suffix=" s", singleStep=0.05)
+        self.radius.setToolTip("How far on either side frames follow. Turn the wheel while dragging to change it.")
+        self._radius_slider = slider(1, SLIDER_STEPS)
         self.row("Radius", self.radius)
         self.column.addWidget(self._radius_slider)
         self.strength = QSpinBox(minimum=0, maximum=100, suffix=" %")
@@ -34,7 +36,7 @@ class BrushSection(Section):
         )
         self.column.addWidget(self.follow)
         self.radius.valueChanged.connect(self._set_radius)
-        self._radius_slider.valueChanged.connect(self._set_radius)
+        self._radius_slider.valueChanged.connect(lambda steps: self._set_radius(steps * STEP_S))
         self.strength.valueChanged.connect(self._set_strength)
         self._strength_slider.valueChanged.connect(self._set_strength)
         self.exact.toggled.connect(self._set_exact)
@@ -42,8 +44,8 @@ class BrushSection(Section):
         session.changed.connect(self._on_change)
         self._show()
 
-    def _set_radius(self, frames: int) -> None:
-        self.session.set_brush(radius_frames=frames)
+    def _set_radius(self, seconds: float) -> None:
+        self.session.set_brush(radius_s=seconds)
 
     def _set_strength(self, percent: int) -> None:
         self.session.set_brush(strength=percent / 100)
@@ -59,10 +61,11 @@ class BrushSection(Section):
             self._show()
 
     def _show(self) -> None:
-        radius, percent = self.session.radius_frames, round(100 * self.session.strength)
+        radius_s, percent = self.session.radius_s, round(100 * self.session.strength)
+        with QSignalBlocker(self.radius):
+            self.radius.setValue(radius_s)
         for widget, value in (
-            (self.radius, radius),
-            (self._radius_slider, radius),
+            (self._radius_slider, round(radius_s / STEP_S)),
             (self.strength, percent),
             (self._strength_slider, percent),
         ):

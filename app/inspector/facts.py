@@ -43,15 +43,21 @@ class FactsSection(Section):
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.TOOL):
             self._show()
+        elif change & Change.PLAYHEAD:
+            self._tell()
+
+    def _tell(self) -> None:
+        """Say what came of the edit where the playhead is."""
+        told = self._told_of(self._step())
+        self.told.setText("\n".join(told))
+        self.told.setVisible(bool(told))
 
     def _show(self, *_: int) -> None:
         session, step = self.session, self._step()
         modes = {"exact": session.exact, "follow": session.follow}
         made = {name: step.edit.inputs.get(name) for name in modes} if step is not None else modes
         self.again_button.setVisible(session.draft is None and made != modes)
-        told = self._told_of(step)
-        self.told.setText("\n".join(told))
-        self.told.setVisible(bool(told))
+        self._tell()
         self.facts.setText(self._counts())
 
     def _step(self) -> EditCommand | None:
@@ -65,10 +71,15 @@ class FactsSection(Section):
             rows = slice(draft.start, draft.stop)
             if draft.asked is draft.reached:
                 return []  # nothing was asked of a control
-            return _told(draft.weights, draft.asked, session.controls[rows], session.asked[rows], session.exact)
+            before = session.controls[rows], session.asked[rows]
+            return _told(
+                draft.weights, draft.asked, *before, exact=session.exact, frames=(draft.start, session.playhead)
+            )
         if step is None or step.asked is None:
             return []
-        return _told(step.edit.weights, step.asked[1], *step.before, bool(step.edit.inputs.get("exact")))
+        start, asked = step.asked
+        exact = bool(step.edit.inputs.get("exact"))
+        return _told(step.edit.weights, asked, *step.before, exact=exact, frames=(start, session.playhead))
 
     def _counts(self) -> str:
         session, draft, frames = self.session, self.session.draft, len(self.session.take)
@@ -82,18 +93,24 @@ class FactsSection(Section):
         return f"{moved:,} of {counted(frames, 'frame')} changed, the rest is as recorded, bit for bit.\n{LEGEND}"
 
 
-def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, exact: bool) -> list[str]:
-    """Return a line for each control that an edit asked for: (n, 52) weights, (n, 8) mm asked and there before."""
-    changed = asked != controls
-    reached, everything = bundled_measurer().measure(weights), np.where(changed, asked, asked_before)
-    short = {
-        found.control: found
-        for found in shortfalls(weights, everything, bundled_measurer(), exact_curve=exact)
-        if changed[:, found.control].any()
-    }
+def _told(
+    weights: Array, asked: Array, controls: Array, asked_before: Array, *, exact: bool, frames: tuple[int, int]
+) -> list[str]:
+    """Return a line for each control that an edit asked for: (n, 52) weights, (n, 8) mm asked and there before.
+
+    `frames` are the first row's and the playhead's. It tells of the row at the playhead, whose face and values are on
+    the screen; where nothing was asked there, of the row that was asked for most, and names its frame. What a row on
+    the way there misses is no answer to what was asked.
+    """
+    changed, playhead = asked != controls, frames[1] - frames[0]
     lines = []
     for lane in np.flatnonzero(changed.any(axis=0)).tolist():
-        row = int(np.argmax(np.abs(asked[:, lane] - controls[:, lane])))
-        met = f"{CURVES[lane].title} {reached[row, lane]:.1f} mm of {asked[row, lane]:.1f} asked"
-        lines.append(str(short[lane]) if lane in short else met)
+        here = 0 <= playhead < len(asked) and changed[playhead, lane]
+        row = playhead if here else int(np.argmax(np.abs(asked[:, lane] - controls[:, lane])))
+        wanted = np.where(changed[row], asked[row], asked_before[row])[None]
+        found = shortfalls(weights[row : row + 1], wanted, bundled_measurer(), exact_curve=exact)
+        short = next((str(each) for each in found if each.control == lane), "")
+        reached = bundled_measurer().measure(weights[row : row + 1])[0, lane]
+        met = f"{CURVES[lane].title} {reached:.1f} mm of {asked[row, lane]:.1f} asked"
+        lines.append(f"{short or met}{'' if here else f' (frame {frames[0] + row:,})'}")
     return lines

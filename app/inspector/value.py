@@ -34,7 +34,7 @@ class ValueSection(Section):
         self.value.editingFinished.connect(self._typed)
         self.close_button = QPushButton("Close here")
         self.close_button.setToolTip(
-            "Bring the lips, or the eyelids, together on the selection or around the playhead."
+            "Bring the lips together as far as the brush reaches, or the eyelids for a blink; the selection stays closed."
         )
         self.close_button.clicked.connect(self.close_here)
         self.column.addWidget(self.close_button)

@@ -50,11 +50,13 @@ class PinsSection(Section):
         self._weights = WeightSliders()
         self._weights.moved.connect(self._move)
         self._weights.searched.connect(self._show_sliders)
-        self.column.addWidget(self._weights)
         self.keep_button, self.drop_button = QPushButton("Pin"), QPushButton("Drop")
         self.keep_button.setProperty("primary", True)
         self.keep_button.setToolTip("Keep the pose and the pin")
-        self.side_by_side(self.keep_button, self.drop_button)
+        self.side_by_side(
+            self.keep_button, self.drop_button
+        )  # above the sliders: beneath them a low screen has no room
+        self.column.addWidget(self._weights)
         self.keep_button.clicked.connect(self.keep)
         self.drop_button.clicked.connect(self.drop)
         session.changed.connect(self._on_change)

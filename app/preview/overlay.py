@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QPainter, QPen
 
 from app.preview.camera import Camera
 from app.preview.picking import View, facing, places, views
+from app.preview.renderer import HEAT, HEAT_FULL_MM
 from app.session.sides import Dot, Side
 from app.theme import GRID
 from engine.take import Array, Mask
@@ -96,6 +97,17 @@ class Overlay:
         width, away = painter.fontMetrics().horizontalAdvance(text), (CHOSEN_PX if dot.chosen else DOT_PX) + 2
         left = at.x() + away + width > view.left + view.width
         _write(painter, at + QPointF(-away - width if left else away, -away + 1), text)
+
+
+def draw_scale(painter: QPainter, height: int) -> None:
+    """Draw what the colours of a difference are, at the foot of a picture of this height."""
+    left, top, wide, high, steps = GRID, height - 34, 160, 8, 40
+    for index in range(steps):
+        at = index / (steps - 1) * (len(HEAT) - 1)
+        colour = [int(np.interp(at, np.arange(len(HEAT)), channel)) for channel in HEAT.T]
+        painter.fillRect(QRectF(left + index * wide / steps, top, wide / steps + 1, high), QColor(*colour))
+    painter.drawText(left, top + 22, "0")
+    painter.drawText(left + wide - 44, top + 22, f"{HEAT_FULL_MM:.0f} mm +")
 
 
 def _write(painter: QPainter, at: QPointF, text: str) -> None:

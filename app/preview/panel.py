@@ -6,7 +6,7 @@ import time
 from dataclasses import replace
 
 import numpy as np
-from PySide6.QtCore import QPoint, QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
@@ -18,7 +18,6 @@ from PySide6.QtGui import (
     QWheelEvent,
 )
 from PySide6.QtWidgets import (
-    QButtonGroup,
     QComboBox,
     QFrame,
     QHBoxLayout,
@@ -29,10 +28,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.preview.camera import PRESETS, Camera
-from app.preview.overlay import Overlay
+from app.preview.camera import PRESETS, Camera, looking
+from app.preview.kept import KeptPictures
+from app.preview.overlay import Overlay, draw_scale
 from app.preview.picking import vertex_under
-from app.preview.renderer import GROUND, HEAT, HEAT_FULL_MM, Picture, Shot
+from app.preview.renderer import GROUND, Picture, Shot
 from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
 from app.session.inference import Inference
@@ -40,6 +40,7 @@ from app.session.sides import Side
 from app.theme import GRID
 from app.widgets.text import Label
 from engine.character import Character, bundled
+from engine.framing import framed
 from engine.take import Array
 from engine.words import SENTENCE_LENGTH, plain
 
@@ -47,6 +48,7 @@ VIEWS = ("Before", "After", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
 WIDE = 0.6  # of what preview and curves share, for two heads
+ROUNDED_PX = 4  # a picture of half the resolution is no more than this narrower or wider
 CLICK_PX = 4  # a press that moves no further is a click
 STRIP_PX = (70, 88)  # one face of a strip
 STRIP_CAMERA = Camera(zoom=1.5, pan=(0.0, -0.07))
@@ -58,12 +60,13 @@ class Face(QWidget):
     camera_moved = Signal(object)
     clicked = Signal(QPointF)
     menu_wanted = Signal(QPoint)  # on the screen
+    resized = Signal()  # a picture of another size is wanted
 
     def __init__(self) -> None:
         super().__init__()
         self.camera = Camera()
         self.image = QImage()
-        self.view = "After"
+        self.view = self.pictured = "After"  # what is chosen, and what the picture shows by now
         self.message = "Preparing the preview…"
         self.overlay: Overlay | None = None
         self._grip: QPointF | None = None
@@ -77,44 +80,52 @@ class Face(QWidget):
         """Prefer a portrait."""
         return QSize(460, 620)
 
-    def show_picture(self, picture: Picture, overlay: Overlay | None = None) -> None:
-        """Show a picture, (height, width, 3) uint8, and what is drawn over it."""
-        self.overlay = overlay
+    def show_picture(self, picture: Picture, overlay: Overlay | None = None, view: str = "") -> None:
+        """Show a picture, (height, width, 3) uint8, of one of the views, and what is drawn over it."""
+        self.overlay, self.pictured = overlay, view or self.view
         height, width = picture.shape[:2]
         self.image = QImage(picture.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
         self.message = ""
         self.repaint()
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw the picture to fill the panel, then what labels it."""
+        """Draw the picture, then what labels it."""
         painter = QPainter(self)
         painter.fillRect(self.rect(), QColor(*GROUND))
         if not self.image.isNull():
             painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-            painter.drawImage(self.rect(), self.image)
+            painter.drawImage(self.picture_box(), self.image)
         painter.setPen(QColor("#e3e6eb"))
         if self.message:
             flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
             painter.drawText(self.rect().adjusted(24, 24, -24, -24), flags, self.message)
         elif self.overlay is not None:
             self.overlay.draw(painter)
-        elif self.view == "Split":
+        elif self.pictured == "Split":
             middle = self.width() // 2
             painter.drawLine(middle, 0, middle, self.height())
             painter.drawText(GRID, 18, "before")
             painter.drawText(middle + GRID, 18, "after")
-        elif self.view == "Difference":
-            self._draw_scale(painter)
+        elif self.pictured == "Difference":
+            draw_scale(painter, self.height())
 
-    def _draw_scale(self, painter: QPainter) -> None:
-        left, top, width, height = GRID, self.height() - 34, 160, 8
-        steps = 40
-        for index in range(steps):
-            at = index / (steps - 1) * (len(HEAT) - 1)
-            colour = [int(np.interp(at, np.arange(len(HEAT)), channel)) for channel in HEAT.T]
-            painter.fillRect(QRectF(left + index * width / steps, top, width / steps + 1, height), QColor(*colour))
-        painter.drawText(left, top + 22, "0")
-        painter.drawText(left + width - 44, top + 22, f"{HEAT_FULL_MM:.0f} mm +")
+    def picture_box(self) -> QRectF:
+        """Return where the picture is: everywhere; one of another format in its own, until the next one comes."""
+        width = self.image.width() * self.height() / max(1, self.image.height())
+        if abs(width - self.width()) <= ROUNDED_PX:
+            return QRectF(self.rect())
+        return QRectF((self.width() - width) / 2, 0.0, width, self.height())
+
+    def event(self, event: QEvent) -> bool:
+        """Ask for another picture on a screen of another resolution."""
+        if event.type() == QEvent.Type.DevicePixelRatioChange:
+            self.resized.emit()
+        return super().event(event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Ask for a picture of the new size."""
+        super().resizeEvent(event)
+        self.resized.emit()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Take hold of the camera."""
@@ -198,6 +209,7 @@ class PreviewPanel(QFrame):
         self._spent_ms = self._quick_ms = 0.0  # what a picture took, with smooth edges and without
         self._asked_at = 0.0
         self._off = False
+        self._kept, self._from_kept = KeptPictures(), False
         self._still = QTimer(self, singleShot=True, interval=STILL_MS)
         self._still.timeout.connect(self._sharpen)
         self.drawing = render_thread()
@@ -205,20 +217,21 @@ class PreviewPanel(QFrame):
         self.drawing.failed.connect(self._refused)
         self._lay_out()
         self.face.camera_moved.connect(lambda _: self.refresh())
+        self.face.resized.connect(self.refresh)
         self.face.clicked.connect(self._pick)
         session.changed.connect(self._on_change)
 
     def _lay_out(self) -> None:
         row = QHBoxLayout()
         row.setSpacing(2)
-        self._views = QButtonGroup(self)
+        self.views: dict[str, QToolButton] = {}  # by name; Tab would reach but one of a QButtonGroup
         for name in VIEWS:
             button = QToolButton()
             button.setText(name)
             button.setCheckable(True)
             button.setProperty("segment", True)
             button.setToolTip(f"Show {name.lower()} (hold B to see the original)")
-            self._views.addButton(button)
+            self.views[name] = button
             row.addWidget(button)
             button.setChecked(name == self.face.view)
             button.clicked.connect(lambda _=False, chosen=name: self.show_view(chosen))
@@ -247,15 +260,18 @@ class PreviewPanel(QFrame):
     def show_view(self, name: str) -> None:
         """Show before, after, split or difference."""
         self.face.view = name
-        for button in self._views.buttons():
-            button.setChecked(button.text() == name)
+        for view, button in self.views.items():
+            button.setChecked(view == name)
         self.view_changed.emit(name)
-        self.refresh()
+        self.refresh(moving=False)  # nothing moves: a coarse picture first would flicker
 
     def look_from(self, name: str) -> None:
         """Look at the face from a named place."""
-        self.face.camera = PRESETS[name]
-        self.refresh()
+        head = (self._sides[0].head if self._sides else self._character) or bundled()
+        at = {point: head.neutral[vertex].astype(float) for point, vertex in head.landmarks.items()}
+        self.face.camera = looking(name, at, *framed(head))
+        self.presets.setCurrentText(name)
+        self.refresh(moving=False)
 
     def show_character(self, character: Character | None) -> None:
         """Show another head; None is the bundled one."""
@@ -277,7 +293,13 @@ class PreviewPanel(QFrame):
         self._asked_at = time.perf_counter()
         shot = replace(self._shot(), size=size, smooth_edges=not self._coarse)
         live = self._live is not None
-        self.drawing.submit(Wanted(shot, self._character, since, live=live, sides=self._sides))
+        wanted = Wanted(shot, self._character, since, live=live, sides=self._sides, view=self.face.view)
+        kept = self._kept.get(wanted)
+        self._from_kept = kept is not None
+        if kept is not None:
+            self.face.show_picture(kept, view=wanted.view)
+            return
+        self.drawing.submit(wanted)
         if self._coarse:
             self._still.start()
 
@@ -290,7 +312,7 @@ class PreviewPanel(QFrame):
     def show_sides(self, sides: tuple[Side, ...]) -> None:
         """Show these side by side in place of the take; none goes back to it."""
         self._sides = sides
-        for button in self._views.buttons():
+        for button in self.views.values():
             button.setEnabled(not sides)
         self._widen(wide=len(sides) > 1)
         self.refresh()
@@ -343,8 +365,12 @@ class PreviewPanel(QFrame):
             self._spent_ms = spent
         elif wanted.shot.size[0] > 0.75 * self.face.width() * self.devicePixelRatioF():
             self._quick_ms = spent
+        self._kept.put(wanted, picture)
+        if self._from_kept:
+            return  # what was wanted since is on the screen already
         size = self.face.width(), self.face.height()
-        self.face.show_picture(picture, Overlay.of(wanted.sides, wanted.shot.camera, *size) if wanted.sides else None)
+        overlay = Overlay.of(wanted.sides, wanted.shot.camera, *size) if wanted.sides else None
+        self.face.show_picture(picture, overlay, wanted.view)
         if wanted.since:
             timed = self.live_timed if wanted.live else self.timed
             timed.emit((time.perf_counter() - wanted.since) * 1e3)
@@ -379,11 +405,6 @@ class PreviewPanel(QFrame):
             self._show_frame()
             drafted = change & Change.DRAFT and session.draft is not None and self._inference.busy
             self.refresh(since=self._inference.since if drafted else 0.0)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        """Draw at the new size."""
-        super().resizeEvent(event)
-        self.refresh()
 
     def showEvent(self, event: object) -> None:
         """Draw as soon as there is something to draw on."""

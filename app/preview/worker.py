@@ -22,6 +22,7 @@ class Wanted:
     live : whether it shows a live face
     strip : whether it is a strip of variants
     sides : what it shows side by side, for what is drawn over it
+    view : which of the preview's views it is, likewise
     """
 
     shot: Shot
@@ -30,6 +31,7 @@ class Wanted:
     live: bool = False
     strip: bool = False
     sides: tuple[Side, ...] = ()
+    view: str = ""
 
 
 class RenderJob:

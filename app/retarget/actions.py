@@ -8,6 +8,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
+from app.retarget.heads import HeadSection
 from app.retarget.labelling import Labelling
 from app.retarget.places import PlacesSection
 from app.retarget.placing import Placing
@@ -18,7 +19,7 @@ from app.session import Session
 from app.widgets.section import Section
 from engine.errors import EngineError
 
-HEADS = "Heads (*.npz *.glb *.gltf *.obj)"
+HEADS = "Heads (*.npz *.glb *.gltf *.vrm *.obj)"
 CAPTURES = "Markers (*.csv *.tsv *.trc *.c3d)"
 SUGGESTED = 4
 
@@ -34,7 +35,7 @@ class RetargetActions(QObject):
     Attributes
     ----------
     retargeting, labelling, placing : what is carried, its labels and its markers
-    panel, places : the sections that show it
+    panel, heads, places : the sections that show it
     """
 
     shown = Signal(object)  # sides, for the preview
@@ -46,6 +47,7 @@ class RetargetActions(QObject):
         self.retargeting = Retargeting(session)
         self.labelling, self.placing = Labelling(session, self.retargeting), Placing(self.retargeting)
         self.panel = RetargetSection(session, self.retargeting, self.labelling)
+        self.heads = HeadSection(session, self.retargeting)
         self.places = PlacesSection(session, self.retargeting, self.placing)
         self.retargeting.failed.connect(self.failed)
         for signal in (self.retargeting.changed, self.retargeting.drawn):
@@ -76,7 +78,7 @@ class RetargetActions(QObject):
     @property
     def sections(self) -> tuple[Section, ...]:
         """What the inspector shows with the tool."""
-        return self.panel, self.places
+        return self.panel, self.heads, self.places
 
     def pick(self, side: int, vertex: int) -> None:
         """Place the chosen marker on the vertex that was clicked."""

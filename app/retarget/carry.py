@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.character import Character, bundled
+from engine.character import Character, bundled, without_lacking
 from engine.errors import EditError
+from engine.formats.characters.assemble import Import
+from engine.formats.characters.marker_places import MarkerTable, places_on
+from engine.formats.characters.reading import Reading
 from engine.spacetime.layout import Layout, named, standard
 from engine.spacetime.matching import Matching
 from engine.take import SHAPE_INDEX, Array, Take
@@ -53,10 +56,16 @@ class Target:
     places : vertex by marker name
     by_hand : names of those that were placed by hand
     labels : what the head does at a few frames, weights by shape name
+    reading : what was corrected when it was read
+    imported : what its file's shapes were taken for, and in which frame; None for a head of ours
+    markers : what the markers of a capture were taken for; without rows for a take
     """
 
     head: Character | None = None
     path: Path | None = None
+    reading: Reading = field(default_factory=Reading)
+    imported: Import | None = None
+    markers: MarkerTable = field(default_factory=MarkerTable)
     places: Mapping[str, int] = field(default_factory=dict)
     by_hand: frozenset[str] = frozenset()
     labels: Mapping[int, Pose] = field(default_factory=dict)
@@ -131,7 +140,7 @@ class Carrier:
         if wish.from_labels:
             return self._from_labels(wish, tell)
         start, stop = wish.frames or (0, len(wish.performance.take))
-        part = self.source(wish.performance).part(start, stop)
+        part = _measured(self.source(wish.performance).part(start, stop), wish.target)
         return Carried(self._matched(wish, part, tell), start)
 
     def _matched(self, wish: Carry, part: Source, tell: Callable[[float], None]) -> Take:
@@ -147,11 +156,20 @@ class Carrier:
         base, points = wish.performance.take, None
         capture = wish.performance.capture
         if capture is not None:  # the labels correct what the markers tell
-            base = self._matched(wish, capture, lambda share: tell(share / 2))
+            base = self._matched(wish, _measured(capture, wish.target), lambda share: tell(share / 2))
             points = points_of(wish.performance)
         labels = {frame: posed(base.weights[frame], pose) for frame, pose in wish.target.labels.items()}
         made = from_labels(base, labels, source=points, tell=tell)
-        return Carried(made.take, 0, made.uncertainty)
+        assert wish.target.head is not None
+        return Carried(without_lacking(made.take, wish.target.head), 0, made.uncertainty)
+
+
+def _measured(source: Source, target: Target) -> Source:
+    """Return a capture with lips and lids measured by the landmarks that its markers were corrected to."""
+    from engine.spacetime.source import with_gaps
+
+    corrected = any(row.how in ("by hand", "left out") for row in target.markers.rows)
+    return with_gaps(source, target.markers.landmarks) if corrected else source
 
 
 def points_of(performance: Performance) -> Array:
@@ -171,16 +189,39 @@ def posed(weights: Array, pose: Pose) -> Array:
     return changed
 
 
-def opened(path: Path | None) -> Target:
-    """Return a head with its 54 markers placed; with none where it lacks the landmarks for them."""
-    from engine.formats.characters.opening import character_of
+def opened(path: Path | None, reading: Reading | None = None) -> Target:
+    """Return a head, read as corrected, with its 54 markers placed; with none where it lacks the landmarks for them."""
+    from engine.formats.characters.opening import character_of, is_own
+    from engine.formats.characters.reading import import_head
 
-    head = bundled() if path is None else replace(character_of(path), name=path.stem)
+    reading, imported = reading or Reading(), None
+    if path is None:
+        head = bundled()
+    elif is_own(path):
+        head = replace(character_of(path), name=path.stem)
+    else:
+        imported = import_head(path, reading)
+        head = replace(imported.character, name=path.stem)
+    target = Target(head, path, reading, imported)
     try:
         layout = standard(head)
     except EditError:
-        return Target(head, path)
-    return Target(head, path, dict(zip(layout.names, layout.vertices.tolist(), strict=True)))
+        return target
+    return replace(target, places=dict(zip(layout.names, layout.vertices.tolist(), strict=True)))
+
+
+def with_markers(target: Target, capture: Source, table: MarkerTable) -> Target:
+    """Return the target with a capture's markers placed on it: those by hand stay, the others go where they were taken for."""
+    made = replace(target, markers=table)
+    if target.head is None or not table.landmarks:
+        return made
+    given = {name: target.places[name] for name in capture.names if name in target.by_hand and name in target.places}
+    try:
+        found = places_on(target.head, capture.neutral, capture.names, table, given)
+    except EditError:
+        return made  # the head lacks landmarks: they are placed by hand
+    others = {name: vertex for name, vertex in target.places.items() if name not in capture.names}  # for a take again
+    return replace(made, places={**others, **found})
 
 
 def with_place(target: Target, name: str, vertex: int | None) -> Target:

@@ -89,8 +89,8 @@ class Labelling:
         """Write labels; raises `EngineError`."""
         target, folder = self._retargeting.target, path.absolute().parent
         head = target.path.absolute() if target.path else None
-        if head is not None and head.is_relative_to(folder):
-            head = head.relative_to(folder)  # so that the two can move together
+        if head is not None:  # so that the two can move together; a file names nothing outside its folder
+            head = head.relative_to(folder) if head.is_relative_to(folder) else None
         files.write(LabelFile(target.labels, head), path)
 
     def _change(self, labels: Mapping[int, Pose], title: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from app.retarget.carry import Carrier, Target, with_place
+from app.retarget.carry import Carrier, Target, with_markers, with_place
 from app.retarget.retargeting import Retargeting
 from engine.formats import markers_layout
 
@@ -52,6 +52,20 @@ class Placing:
         if name in state.target.places:
             state.change_target(with_place(state.target, name, None), f"remove {name}")
 
+    def mean(self, landmark: str) -> None:
+        """Say which landmark the chosen marker is, or with nothing that it is left out; the others are placed anew."""
+        state, name = self._retargeting, self.chosen
+        capture, target = state.capture, state.target
+        if capture is None or not name or target.markers.landmarks.get(name, "") == landmark != "":
+            return
+        free = replace(target, by_hand=target.by_hand - {name})
+
+        def work() -> Target:
+            return with_markers(free, capture, target.markers.corrected({name: landmark}))
+
+        title = f"take {name} for {landmark}" if landmark else f"leave {name} out"
+        state.submit(work, lambda changed: state.change_target(changed, title))
+
     def place_rest(self) -> None:
         """Let the markers that were not placed by hand follow those that were."""
         from engine.formats.characters.placing import place_rest
@@ -72,10 +86,12 @@ class Placing:
         """Read where the markers are from a landmark file; raises `EngineError`."""
         state = self._retargeting
         if state.target.head is not None:
-            places = markers_layout.read(path, vertices=len(state.target.head.neutral))
+            places = markers_layout.read(path, head=state.target.head)
             target = replace(state.target, places=places, by_hand=frozenset(places))
             state.change_target(target, f"read {path.name}")
 
     def write(self, path: Path) -> None:
         """Write where the markers are to a landmark file; raises `EngineError`."""
-        markers_layout.write(self._retargeting.target.places, path)
+        target = self._retargeting.target
+        if target.head is not None:
+            markers_layout.write(target.places, path, head=target.head)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,12 +11,26 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.retarget.carry import Carried, Carrier, Carry, Errand, Performance, Pose, Stopped, Target, opened, posed
+from app.retarget.capture import Capture, captured
+from app.retarget.carry import (
+    Carried,
+    Carrier,
+    Carry,
+    Errand,
+    Performance,
+    Pose,
+    Stopped,
+    Target,
+    opened,
+    posed,
+    with_markers,
+)
 from app.retarget.commands import TargetCommand
+from app.retarget.kept import KeptHeads
 from app.session import Change, Session
 from app.session.commands import EditCommand
 from engine.character import Character, bundled
-from engine.formats import markers
+from engine.formats.characters.reading import Reading
 from engine.spacetime.layout import MARKERS
 from engine.spacetime.matching import Matching
 from engine.take import SHAPES, Array
@@ -50,6 +63,7 @@ class Retargeting(QObject):
     opening : the name of the file that is being opened, or nothing
     suggestions : frames that are worth a label, best first
     draft_pose : weights of the target that were moved at the playhead
+    refused : a head that could not be used as it was read, and how it was; None where there is none
     """
 
     changed = Signal()
@@ -84,7 +98,9 @@ class Retargeting(QObject):
         self._short.failed.connect(self._short_refused)
         self.progress.connect(self._advance)
         self._offered: Character | None = None
-        self._heads: dict[str, Character | None] = {"": None}  # by path; the bundled one has none
+        self._kept_heads = KeptHeads(session, self.submit, self._follow)
+        self.refused: tuple[Path, Reading] | None = None
+        self._opening_head: tuple[Path | None, Reading] | None = None
         session.changed.connect(self._on_change)
         session.undo.indexChanged.connect(self._follow)
 
@@ -141,23 +157,47 @@ class Retargeting(QObject):
     def open_markers(self, path: Path, neutral_frame: int = 0) -> None:
         """Read a capture and carry it in place of the take."""
 
-        def work() -> Source:
-            from engine.spacetime.source import from_markers
+        target = self.target
 
-            return from_markers(markers.read(path), neutral_frame=neutral_frame)
+        def work() -> Capture:
+            return captured(path, neutral_frame, target)
 
-        self._open(path.name, work, lambda capture: self._take_capture(capture, path))
+        self._open(path.name, work, lambda made: self._take_capture(made, path))
 
     def measure_from(self, frame: int) -> None:
         """Take another frame of the capture for the face at rest."""
         if self._capture_path is not None:
             self.open_markers(self._capture_path, frame)
 
-    def choose_target(self, path: Path | None, labels: Mapping[int, Pose] | None = None) -> None:
-        """Carry to the head in a file or folder, with labels that are known for it; None is the bundled one."""
+    def choose_target(
+        self, path: Path | None, labels: Mapping[int, Pose] | None = None, reading: Reading | None = None
+    ) -> None:
+        """Carry to the head in a file or folder, with labels that are known for it; None is the bundled one.
+
+        `reading` is what a person corrected about it: its markers by hand and its labels stay then.
+        """
         name = path.name if path else bundled().name
-        labelled = partial(replace, labels=labels or {})
-        self._open(name, lambda: opened(path), lambda target: self.change_target(labelled(target), f"carry to {name}"))
+        before, capture = self.target, self.capture
+
+        def work() -> Target:
+            found = opened(path, reading)
+            if reading is not None and before.path == path:
+                found = replace(found, labels=before.labels, by_hand=before.by_hand)
+                found = replace(
+                    found, places={**found.places, **{each: before.places[each] for each in before.by_hand}}
+                )
+            found = found if labels is None else replace(found, labels=labels)
+            return found if capture is None else with_markers(found, capture, before.markers)
+
+        title = f"carry to {name}" if reading is None else f"read {name} anew"
+        self.refused = None
+        self._open(name, work, lambda target: self.change_target(target, title), (path, reading or Reading()))
+
+    def read_anew(self, **changes: Any) -> None:
+        """Read the target again, or the head that could not be used, with fields of its `Reading` changed."""
+        path, reading = self.refused or (self.target.path, self.target.reading)
+        if path is not None:
+            self.choose_target(path, reading=replace(reading, **changes))
 
     def show_on(self, path: Path | None) -> None:
         """Read a head to show the take on, None for the bundled one; it is the target where the user chose no other."""
@@ -171,11 +211,17 @@ class Retargeting(QObject):
         touched = target.head is not self._offered or target.labels or target.by_hand or self.result is not None
         if target.head is None or not touched:
             self._offered = offer.head
-            self._put(offer)
+            self._put(offer if self.capture is None else with_markers(offer, self.capture, target.markers))
 
-    def _open(self, name: str, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
+    def _open(
+        self,
+        name: str,
+        work: Callable[[], Any],
+        then: Callable[[Any], None],
+        head: tuple[Path | None, Reading] | None = None,
+    ) -> None:
         self.cancel()
-        self.opening = name
+        self.opening, self._opening_head = name, head
         self.submit(work, then)
         self.changed.emit()
 
@@ -183,15 +229,19 @@ class Retargeting(QObject):
         """Have work done off the GUI thread; `then` gets what it returns, and errors go to `failed`."""
         self._whole.submit(Errand(work, then))
 
-    def _take_capture(self, capture: Source, path: Path) -> None:
+    def _take_capture(self, made: Capture, path: Path) -> None:
         self.opening = ""
         before = self.capture, self._capture_path
-        self.capture, self._capture_path = capture, path
-        self.capture_opened.emit(capture.take)
-        if self._session.take is not capture.take:  # edits would have been lost, and the user would rather not
+        self.capture, self._capture_path = made.source, path
+        self.capture_opened.emit(made.source.take)
+        if self._session.take is not made.source.take:  # edits would have been lost, and the user would rather not
             self.capture, self._capture_path = before
-        elif self.target.head is None:
-            self.choose_target(None)
+        else:
+            self._put(made.on(self.target))
+            if self.target.head is None:
+                self.choose_target(None)
+            if made.doubt is not None:
+                self.failed.emit(made.doubt.sentence, "Place some of its markers on the target by hand.")
         self.changed.emit()
 
     def change_target(self, target: Target, title: str) -> None:
@@ -203,7 +253,7 @@ class Retargeting(QObject):
             undo.setClean()  # nothing of the take has changed
 
     def _put(self, target: Target) -> None:
-        self.target, self.opening = target, ""
+        self.target, self.opening, self.refused = target, "", None
         self._begin_anew()
 
     def propose(self, frames: list[int]) -> None:
@@ -291,6 +341,7 @@ class Retargeting(QObject):
             "method": self.method,
             "labels": {str(frame): dict(pose) for frame, pose in target.labels.items()},
             "places": dict(target.places),
+            "reading": target.reading.stored(),
             "alpha": self.matching.alpha,
             "beta": self.matching.beta,
             "closure": self.matching.closure,
@@ -303,7 +354,7 @@ class Retargeting(QObject):
 
         def then(patch: Patch) -> None:
             if session.take is take:
-                self._heads[str(target.path or "")] = None if head is bundled() else head
+                self._kept_heads.know(inputs, None if head is bundled() else head)
                 session.undo.push(EditCommand(session, patch, f"carry to {head.name}", kind=KIND, inputs=inputs))
 
         self.submit(work, then)
@@ -343,22 +394,15 @@ class Retargeting(QObject):
             return  # a project is being opened; it says so when it is
         contents = session.contents()
         kept = [edit for edit in contents.edits[: contents.position] if edit.kind == KIND]
-        name = str(kept[-1].inputs.get("target", "")) if kept else ""
-        if name not in self._heads:
-            self._heads[name] = None  # where it cannot be read, once is enough
-            self.submit(lambda: opened(Path(name)), lambda target: self._found(name, target))
-        elif self._heads[name] is not session.character:
-            session.play_on(self._heads[name])
-
-    def _found(self, name: str, target: Target) -> None:
-        self._heads[name] = target.head
-        self._follow()
+        self._kept_heads.follow(kept[-1].inputs if kept else {})
 
     def _deliver(self, errand: Errand, result: Any) -> None:
         errand.then(result)
 
     def _refused(self, request: object, sentence: str, advice: str) -> None:
-        self._solving, self.share, self.opening = None, None, ""
+        if self.opening and self._opening_head is not None and self._opening_head[0] is not None:
+            self.refused = self._opening_head[0], self._opening_head[1]
+        self._solving, self.share, self.opening, self._opening_head = None, None, "", None
         self.failed.emit(sentence, advice)
         self.changed.emit()
 

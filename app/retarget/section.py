@@ -44,7 +44,7 @@ class RetargetSection(Section):
         self.rest_frame.valueChanged.connect(retargeting.measure_from)
         self.target_button, self.folder_button = QPushButton("Head…"), QPushButton("Folder…")
         self.bundled_button = QPushButton("Retake's own head")
-        self.target_button.setToolTip("A character file, glTF or GLB, OBJ, or a packed ICT-FaceKit")
+        self.target_button.setToolTip("A character file, glTF, GLB or VRM, OBJ, or a packed ICT-FaceKit")
         self.folder_button.setToolTip("A folder with one OBJ file for each shape")
         self.bundled_button.setToolTip("The head that comes with Retake, which every take is first shown on")
         self.column.addWidget(self._source)
@@ -134,7 +134,10 @@ class RetargetSection(Section):
         if not state.ready:
             return f"The take is on {state.target.head.name}. Choose another head to carry it on."
         if state.result is not None:
-            return f"Solved {counted(len(state.result.take), 'frame')}: play them, then keep or drop them."
+            said = [each for each in state.result.take.notices if each not in state.performance.take.notices]
+            return " ".join(
+                [f"Solved {counted(len(state.result.take), 'frame')}: play them, then keep or drop them.", *said]
+            )
         if state.share is not None:
             return "You can go on looking meanwhile."
         if state.method == LABELS:

@@ -27,6 +27,11 @@ class Curve:
         """The least it can be."""
         return 0.0
 
+    @property
+    def highest(self) -> float:
+        """The most it can be asked to be."""
+        return 1.0 if self.is_weight else np.inf
+
     def shown(self, value: float) -> str:
         """Return a value as the screen writes it."""
         return f"{value:.2f}" if self.is_weight else f"{value:.1f} {self.unit}"

@@ -19,7 +19,6 @@ from engine.formats import livelink
 from engine.formats.audio import Audio
 from engine.formats.reading import ReadAs
 from engine.project import Contents, Marks, Replayed, Span
-from engine.project.records import FILL
 from engine.speech.lane import VisemeLane
 from engine.take import Array, Mask, Take, runs
 
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from engine.editing import Patch
 
 FIRST_VIEW_S = 16.0
-BRUSH_S = 0.5
+BRUSH_S, RADII_S = 0.5, (0.01, 10.0)  # of the brush: at first, and from a single frame to a whole phrase
 MAX_OFFSET_S = 36_000.0  # of sound and video
 MEDIA = ("audio", "video")  # the kinds that may be attached
 
@@ -73,7 +72,7 @@ class Session(QObject):
     lane : the curve that is worked on, an index into CURVES
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
-    radius_frames, strength : the Drag tool's brush
+    radius_s, strength : the brush: to how far on either side it reaches, and its share of what is pulled
     exact, follow : whether edits hit the curve exactly, and whether controls that nobody asked for follow
     shows_removed : whether the Clean tool draws what it would remove
     audio : the recording of the sound, None where there is none, or it is not found
@@ -119,7 +118,7 @@ class Session(QObject):
         self.selection: tuple[int, int] | None = None
         self.lane = 0
         self.expanded: frozenset[int] = frozenset()
-        self.radius_frames = max(2, round(BRUSH_S * take.fps))
+        self.radius_s = BRUSH_S
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
         other_head, self.character = self.character is not None, None
@@ -166,17 +165,6 @@ class Session(QObject):
         kept = tuple(edit for edit in edits if edit is not None)
         return Contents(self.recorded, kept, len(kept) - undone, self.marks)
 
-    @property
-    def filled(self) -> Mask:
-        """Which frames, (frames,) bool, fills in effect have made."""
-        filled = np.zeros(len(self.take), bool)
-        contents = self.contents()
-        for edit in contents.edits[: contents.position]:
-            if edit.kind == FILL:
-                start, stop = edit.inputs.get("frames", (edit.start, edit.stop))
-                filled[start:stop] = True
-        return filled
-
     def set_marks(self, marks: Marks) -> None:
         """Put other spans, pins, notes, media or another verdict in place."""
         if marks != self.marks:
@@ -202,7 +190,7 @@ class Session(QObject):
         self.draft = None
         self.touched = (0, len(self.take))
         told = Change.READING | Change.CURVES | Change.DRAFT | Change.VIEW | Change.MARKS | Change.MEDIA
-        self.changed.emit(told | Change.VISEMES | Change.PLAYHEAD | Change.SELECTION)
+        self.changed.emit(told | Change.VISEMES | Change.SELECTION)
 
     def set_flags(self, flags: tuple[quality.Flag, ...]) -> None:
         """Show what was found automatically."""
@@ -286,6 +274,11 @@ class Session(QObject):
             return None
         source = self.draft.weights if CURVES[lane].is_weight else self.draft.reached
         return np.asarray(source[:, CURVES[lane].column])
+
+    @property
+    def radius_frames(self) -> float:
+        """How many frames the brush's radius comes to."""
+        return self.radius_s * self.take.fps
 
     def value(self, lane: int, frame: int) -> float:
         """Return the value to show at a frame: the draft's where it has one."""
@@ -403,14 +396,14 @@ class Session(QObject):
     def set_brush(
         self,
         *,
-        radius_frames: int | None = None,
+        radius_s: float | None = None,
         strength: float | None = None,
         exact: bool | None = None,
         follow: bool | None = None,
     ) -> None:
         """Change the Drag tool."""
-        if radius_frames is not None:
-            self.radius_frames = int(np.clip(radius_frames, 1, 300))
+        if radius_s is not None:
+            self.radius_s = float(np.clip(radius_s, *RADII_S))
         if strength is not None:
             self.strength = float(np.clip(strength, 0.0, 1.0))
         if exact is not None:

@@ -18,7 +18,7 @@ from engine.inpaint.stored import restored, stored
 from engine.project import Span
 from engine.project.records import FILL
 from engine.speech.visemes import Cue
-from engine.take import Array, Take
+from engine.take import Array, Mask, Take
 from engine.words import counted
 
 if TYPE_CHECKING:
@@ -84,6 +84,11 @@ class Filling(QObject):
         return f"Variant {self.chosen_seed + 1} · seed {self.chosen_seed}"
 
     @property
+    def first(self) -> int:
+        """The number of the first of the variants: a seed and one more."""
+        return self._first_seed + 1
+
+    @property
     def _first_seed(self) -> int:
         return self._request.seed if self._request else self.seed
 
@@ -104,7 +109,7 @@ class Filling(QObject):
         session = self._session
         inside = [pin for pin in session.marks.pins if span.start <= pin.frame < span.stop]
         others = [(other.start, other.stop) for other in session.marks.spans if other != span]
-        filled = session.filled
+        filled = _filled(session)
         steering = Request(
             frames=(span.start, span.stop),
             region=span.region,
@@ -121,7 +126,8 @@ class Filling(QObject):
 
     def make_again(self, inputs: Mapping[str, Any]) -> None:
         """Make variants of a fill that was kept, the kept one first; raises `EditError` where it cannot be told how."""
-        self._make(restored(inputs), int(inputs.get("seed", 0)))
+        seed = inputs.get("seed", 0)
+        self._make(restored(inputs), seed if isinstance(seed, int) and seed >= 0 else 0)
 
     def _make(self, steering: Request, seed: int) -> None:
         self.busy, self.seed = True, seed
@@ -195,6 +201,16 @@ class Filling(QObject):
             self.seed, self._seen = 0, None
         if change & (Change.TAKE | Change.READING) or (change & Change.CURVES and self.variants):
             self._forget()
+
+
+def _filled(session: Session) -> Mask:
+    """Return which frames, (frames,) bool, fills in effect have made."""
+    filled = np.zeros(len(session.take), bool)
+    contents = session.contents()
+    for edit in contents.edits[: contents.position]:
+        if edit.kind == FILL:
+            filled[edit.start : edit.stop] = True if edit.lost is None else ~edit.lost
+    return filled
 
 
 def _variants(request: FillRequest) -> list[Patch]:

@@ -249,7 +249,7 @@ class SpansSection(Section):
             widget.setVisible(made)
         self.seed.setText(filling.title)
         self.again_button.setEnabled(len(filling.variants) > 1)
-        self.strip.show_variants(filling.variants, filling.chosen)
+        self.strip.show_variants(filling.variants, filling.chosen, first=filling.first)
         self.fill_button.setText("Filling…" if filling.busy else "Fill")
         self.fill_button.setEnabled(not filling.busy)
         if chosen is not None:

@@ -27,7 +27,7 @@ class Strip(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._variants: list[Patch] = []
-        self._chosen, self._frame = 0, 0
+        self._chosen, self._frame, self._first = 0, 0, 1
         self._image = QImage()
         self._timer = QTimer(self, interval=TICK_MS)
         self._timer.timeout.connect(self._tick)
@@ -42,8 +42,9 @@ class Strip(QWidget):
         """No smaller than needed."""
         return self.sizeHint()
 
-    def show_variants(self, variants: list[Patch], chosen: int) -> None:
-        """Play these, with one framed; none stops."""
+    def show_variants(self, variants: list[Patch], chosen: int, *, first: int = 1) -> None:
+        """Play these, counted from `first`, with one framed; none stops."""
+        self._first = first
         if variants is not self._variants:
             self._variants, self._frame, self._image = variants, 0, QImage()
             self.updateGeometry()
@@ -78,11 +79,11 @@ class Strip(QWidget):
                 painter.drawImage(cell, self._image, QRect(index * width, 0, width, self._image.height()))
             painter.setPen(QPen(QColor("#56B4E9" if index == self._chosen else "#2a2f38"), 2))
             painter.drawRect(cell.adjusted(1, 1, -1, -1))
-            painter.fillRect(QRect(cell.left() + 3, cell.top() + 3, 14, 16), QColor(20, 22, 26, 170))
+            number = str(self._first + index)
+            width = painter.fontMetrics().horizontalAdvance(number) + 6
+            painter.fillRect(QRect(cell.left() + 3, cell.top() + 3, width, 16), QColor(20, 22, 26, 170))
             painter.setPen(QColor("#e3e6eb"))
-            painter.drawText(
-                cell.adjusted(6, 4, 0, 0), Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop, str(index + 1)
-            )
+            painter.drawText(cell.adjusted(6, 4, 0, 0), Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop, number)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Choose the variant under the pointer."""

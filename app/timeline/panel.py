@@ -169,7 +169,8 @@ class Timeline(QWidget):
             draw_marks(painter, marks, name, (boxes[name], view), self._colours)
         x = self.x_of(self._session.playhead)
         painter.setPen(QPen(QColor(self._colours.text), 1))
-        painter.drawLine(int(x), 2, int(x), self.height())
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)  # as in the lanes, or the two halves part by a pixel
+        painter.drawLine(QPointF(x, 2.0), QPointF(x, self.height()))
         painter.setBrush(QColor(self._colours.text))
         painter.setPen(Qt.PenStyle.NoPen)
         painter.drawPolygon([QPointF(x - 5, 0), QPointF(x + 5, 0), QPointF(x, 7)])

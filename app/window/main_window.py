@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
@@ -28,8 +29,8 @@ from app.actions.time import TimeActions
 from app.actions.view import ViewActions
 from app.actions.viseme import VisemeActions
 from app.clean.section import CleanSection
-from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
+from app.curves.places import GUTTER_PX
 from app.curves.tools import TOOLS
 from app.importing.line import ImportLine
 from app.inspector.brush import BrushSection
@@ -59,9 +60,11 @@ from app.theme import GRID
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
 from app.widgets.text import PlainText, caption, tip, title
 from app.window.contexts import Contexts
+from app.window.focus import Focus
 from app.window.keyboard import Keyboard
 from app.window.missing import MissingMedia
 from app.window.notices import Notices
+from app.window.screen import DESIGNED, stay_on_screen
 from app.window.status import StatusBar
 from engine.formats.importing import imported
 from engine.performance import demo
@@ -146,7 +149,7 @@ class MainWindow(QMainWindow):
         self._connect()
         self._connect_importing()
         self.preferences.apply_all()
-        self.resize(1440, 900)
+        self.resize(DESIGNED.boundedTo(self.screen().availableSize()))
         self.session.open(take, path)
         self.files.imported = imported(take)
         self._show_opened()
@@ -157,6 +160,8 @@ class MainWindow(QMainWindow):
         tools = (self.edits, self.time, self.marks, self.views, self.visemes, self.retarget, self.review)
         owners = (self, self.files, self.sound, *tools, self.preferences)
         owner = next(each for each in owners if name in type(each).__dict__)
+        if name != "cancel":  # which would keep what is half typed
+            self._focus.give_back()
         getattr(owner, name)()
 
     def _lay_out(self) -> None:
@@ -252,7 +257,12 @@ class MainWindow(QMainWindow):
         self._show_undo()
         self._show_missing()
         self._show_filling()
+        self._watch_keys()
+
+    def _watch_keys(self) -> None:
         self._keyboard = Keyboard(self, self.preview)
+        self._focus = Focus(self, self.curves, (self.timeline, self.preview.face))
+        self._focus.give_back()
 
     def _connect_retarget(self) -> None:
         self.retarget.shown.connect(self.preview.show_sides)
@@ -280,11 +290,15 @@ class MainWindow(QMainWindow):
         self.attached.moved.connect(self.media.move)
         self.timeline.slid.connect(self.media.settle)
 
+    def focusNextPrevChild(self, onwards: bool) -> bool:
+        """Go through what can be seen as the eye does."""
+        return self._focus.step(onwards)
+
     def showEvent(self, event: QShowEvent) -> None:
         """Load the networks once the window can be seen."""
         super().showEvent(event)
-        self.curves.setFocus()
         QTimer.singleShot(0, self.inference.warm_up)
+        QTimer.singleShot(0, partial(stay_on_screen, self))  # the desktop has drawn its frame by then
 
     # --- opening and closing
 
@@ -346,6 +360,7 @@ class MainWindow(QMainWindow):
         """End the threads; the window cannot be used after."""
         self._keyboard.let_go()
         self._plain_text.let_go()
+        self._focus.let_go()
         self.transport.run(0.0)
         self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.files.opening.close()

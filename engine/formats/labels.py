@@ -52,7 +52,22 @@ def read(path: Path) -> LabelFile:
         labels[frame] = {str(shape): _weight(str(shape), value, frame, path) for shape, value in weights.items()}
     if not labels:
         raise FormatError(f"{path.name} labels no frame.", EXPECTED)
-    return LabelFile(labels, None if target is None else path.parent / target)
+    return LabelFile(labels, None if target is None else _beside(target, path))
+
+
+def _beside(target: str, path: Path) -> Path:
+    """Return the target's path; raises `FormatError` for one that leads out of the label file's folder."""
+    try:
+        folder = path.resolve().parent
+        inside = (folder / target).resolve().is_relative_to(folder)
+    except (OSError, ValueError, RuntimeError) as error:
+        raise FormatError(f"{path.name} names a target that is not a file's name.", EXPECTED) from error
+    if not inside:
+        raise FormatError(
+            f"{path.name} names the target {target[:60]!r}, which is outside its folder.",
+            "Copy the head beside the label file and name it so, or remove the target from the file.",
+        )
+    return path.parent / target
 
 
 def write(file: LabelFile, path: Path) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.formats.livelink_origin import lost_frames
-from engine.formats.livelink_timecode import LONGEST_STEP_S, SHORTEST_STEP_S, Style, read_times
+from engine.formats.livelink_timecode import LONGEST_STEP_S, SHORTEST_STEP_S, Style, middle, read_times
 from engine.take import Array, Mask, runs
 from engine.words import counted, plural
 
@@ -166,7 +166,7 @@ def _usual_step(times: Array, quantum_s: float) -> float:
     forward = steps[steps > 0]
     if not len(forward):
         return 0.0
-    usual = float(np.median(forward))
+    usual = middle(forward)
     near = forward[np.abs(forward / usual - 1) < 0.5]
     mean = float(near.mean())
     if quantum_s < 0.2 * mean:

@@ -25,6 +25,7 @@ FEWEST, MOST = 10, 240  # counts per second of a writer that keeps to no standar
 BLOCK_ROWS = 4096  # of timecodes read at once
 COLON = ord(":")
 MOST_FIELDS = 4
+LARGEST_FIELD, LARGEST_NUMBER = 1e7, 1e19  # of several numbers, microseconds at most; of one alone, those since 1970
 SAMPLE = 200  # timecodes whose looks are taken for those of all
 AGREE = 0.95  # share of the rows that must follow a rule for it to count
 UNITS = (1, 1000, 1_000_000, 1_000_000_000)  # of plain numbers: seconds down to nanoseconds
@@ -171,7 +172,9 @@ def _split(timecodes: Sequence[bytes]) -> tuple[Array, bool] | None:
     semicolons = b";" in timecodes[0] + timecodes[-1] and 2 * sum(b";" in code for code in timecodes) > len(timecodes)
     blocks = [timecodes[first : first + BLOCK_ROWS] for first in range(0, len(timecodes), BLOCK_ROWS)]
     fields = np.concatenate([_numbers(block, colons + 1) for block in blocks])
-    good = np.isfinite(fields).all(axis=1)
+    largest = LARGEST_FIELD if colons else LARGEST_NUMBER
+    good = ((fields >= 0) & (fields <= largest)).all(axis=1)
+    fields[~good] = np.nan
     return (fields, semicolons) if 2 * int(good.sum()) > len(timecodes) else None
 
 
@@ -248,7 +251,7 @@ def _base(fields: Array) -> int | None:
     before = np.flatnonzero((steps == 1) | (steps == 1 - DAY_S))
     if not len(before) or not len(inner):
         return None
-    usual = float(np.median(inner))
+    usual = middle(inner)
     usual = float(inner[np.abs(inner / usual - 1) < 0.6].mean())
     held = counts[before] + usual - counts[before + 1]
     votes = {base: int((np.abs(held - base) < max(0.5 * min(usual, 0.05 * base), 0.45)).sum()) for base in BASES}
@@ -262,6 +265,11 @@ def _base(fields: Array) -> int | None:
         uneven = float((inner > 1.5 * np.median(inner)).mean()) > 0.1  # cut off to counts that a rate does not divide
         return odd + 1 if uneven and odd + 1 in BASES else odd
     return best if votes[best] else None
+
+
+def middle(numbers: Array) -> float:
+    """Return the median, (n,), of two in the middle the smaller one, so that it is one of them."""
+    return float(np.sort(numbers)[(len(numbers) - 1) // 2])
 
 
 def _least_base(largest: float, digits: int) -> int:

@@ -243,8 +243,8 @@ def _open_share(triangles: npt.NDArray[np.integer], parts: Indices) -> Array:
     return np.asarray(np.bincount(part, uses == 1, minlength=count) / np.maximum(total, 1))
 
 
-def aim(points_rest: Array, source_rest: Array, displacements: Array) -> Array:
-    """Return where feature points go, (frames, m, 3), when another face's markers lead them.
+def aim(points_rest: Array, source_rest: Array, displacements: Array) -> tuple[Array, Poses]:
+    """Return where feature points go, (frames, m, 3), when another face's markers lead them, and how it was laid on the mesh.
 
     The source's movements are turned and scaled as its face at rest is laid onto the mesh; the head stays still.
 
@@ -255,4 +255,4 @@ def aim(points_rest: Array, source_rest: Array, displacements: Array) -> Array:
     displacements : (frames, m, 3) of the source's markers, the head's motion taken out; NaN where one was not seen
     """
     laid = fit_similarity(source_rest, points_rest[None], mirrored=False)
-    return np.asarray(points_rest + laid.scale[0] * (displacements @ laid.turn[0]))
+    return np.asarray(points_rest + laid.scale[0] * (displacements @ laid.turn[0])), laid

@@ -25,16 +25,16 @@ class Answers:
 
     Attributes
     ----------
-    of : by area, the curves its network read, (frames, controls), its weights, (rows, shapes), and how far its contacts
-        are to be trusted, (rows, contacts)
+    of : by area, the curves its network read, (frames, controls), of which rows it spoke, its weights, (rows, shapes),
+        and how far its contacts are to be trusted, (rows, contacts)
     """
 
-    of: dict[str, list[tuple[Array, Array, Array]]] = field(default_factory=dict)
+    of: dict[str, list[tuple[Array, slice, Array, Array]]] = field(default_factory=dict)
 
-    def find(self, area: str, asked: Array) -> tuple[Array, Array] | None:
-        """Return what an area's network said of these very curves, or None where it was not asked."""
-        for known, weights, trust in self.of.get(area, []):
-            if np.array_equal(known, asked):
+    def find(self, area: str, asked: Array, rows: slice) -> tuple[Array, Array] | None:
+        """Return what an area's network said of these rows of these very curves, or None where it was not asked."""
+        for known, of, weights, trust in self.of.get(area, []):
+            if of == rows and np.array_equal(known, asked):
                 return weights, trust
         return None
 
@@ -128,11 +128,11 @@ class Regressor:
         trust = np.zeros((len(weights), len(contacts.MEETING)))
         for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
             asked = controls[:, area.control_columns]
-            found = answers.find(area.name, asked) if answers is not None and full else None
+            found = answers.find(area.name, asked, rows) if answers is not None and full else None
             known = None if original is None else original[:, area.control_columns]
             said, trusted = found or self._ask(area.name, asked, known, rows, full=full)
             if answers is not None and remember and found is None:
-                answers.of.setdefault(area.name, []).append((asked, said, trusted))
+                answers.of.setdefault(area.name, []).append((asked, rows, said, trusted))
             weights[:, area.shape_columns] = said
             trust[:, contacts.of_area(area.name)] = trusted
         return trust

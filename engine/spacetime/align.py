@@ -38,6 +38,23 @@ class HeadMotion:
         """Return positions, (frames, n, 3) mm, of a still head as they are on the moving one."""
         return np.asarray(positions @ self.rotations.transpose(0, 2, 1) + self.translations[:, None])
 
+    def part(self, start: int, stop: int) -> HeadMotion:
+        """Return the motion of frames [start, stop)."""
+        return HeadMotion(self.rotations[start:stop], self.translations[start:stop])
+
+    def seen_along(self, turn: Array, *, scale: float = 1.0, shift: Array | None = None) -> HeadMotion:
+        """Return the same motion of a head that was laid elsewhere: ``laid = scale * still @ turn + shift``.
+
+        Parameters
+        ----------
+        turn : (3, 3) rotation, acting on rows
+        scale : of the laid head
+        shift : (3,) mm; none where only rotations matter
+        """
+        rotations = turn.T @ self.rotations @ turn
+        place = np.zeros(3) if shift is None else shift
+        return HeadMotion(rotations, scale * self.translations @ turn + place - place @ rotations.transpose(0, 2, 1))
+
     def angles(self) -> Array:
         """Return head yaw, pitch and roll as Live Link Face has them, (frames, 3) radians.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from engine.character import Character
+from engine.character import Character, without_lacking
 from engine.errors import EditError
 from engine.spacetime import prior as priors
 from engine.spacetime.align import Warp
@@ -185,11 +185,10 @@ def retarget(
     matching : what is respected
     tell : is told the share that is done, 0..1; it may raise, to stop
 
-    What no marker tells of (gaze, tongue) is carried over by name; head rotation is the source's. Lost frames that move
-    on the target are lost no more.
-    Raises `EditError` as `correspond` does.
+    What no marker tells of (gaze, tongue) is carried over by name where the target has it, and is 0 where it has not; head
+    rotation is the source's. Lost frames that move on the target are lost no more. Raises `EditError` as `correspond` does.
     """
     pair = correspond(source, character, layout)
     weights = source.take.weights.copy()
     weights[:, pair.shapes] = match(pair, source.take.fps, matching or Matching(), tell)
-    return replace(source.take, origin=None).with_weights(weights)
+    return without_lacking(replace(source.take, origin=None).with_weights(weights), character)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -65,7 +66,8 @@ class Source:
             rotations=self.take.rotations[rows],
             origin=None,
         )
-        return replace(self, displacements=self.displacements[rows], gaps=self.gaps[rows], take=take)
+        head = None if self.head is None else self.head.part(start, stop)
+        return replace(self, displacements=self.displacements[rows], gaps=self.gaps[rows], take=take, head=head)
 
 
 def shown(weights: Array) -> Array:
@@ -86,8 +88,21 @@ def from_take(take: Take, character: Character, layout: Layout | None = None) ->
     return Source(moved, placed.rest(character), placed.names, sizes, take)
 
 
-def from_markers(markers: Markers, *, neutral_frame: int = 0) -> Source:
+def from_markers(
+    markers: Markers,
+    *,
+    neutral_frame: int = 0,
+    turn: Array | None = None,
+    landmarks: Mapping[str, str] | None = None,
+) -> Source:
     """Return a capture with its head motion taken out, measured from a frame in which the face is at rest.
+
+    Parameters
+    ----------
+    markers : the capture
+    neutral_frame : in which the face is at rest
+    turn : (3, 3) rotation from the capture's axes to ours, acting on rows: the head's angles are about its own axes
+    landmarks : which standard marker a marker is, by its name, where the two are called differently
 
     Raises `EditError` where that frame is not there or lacks markers, and where markers coincide or lie in one plane.
     """
@@ -98,7 +113,7 @@ def from_markers(markers: Markers, *, neutral_frame: int = 0) -> Source:
     head = stillest(markers.positions, neutral)
     still = head.remove(markers.positions)
     rotations = np.zeros((len(markers), 9))
-    rotations[:, :3] = head.angles()
+    rotations[:, :3] = (head if turn is None else head.seen_along(turn)).angles()
     take = Take(
         np.zeros((len(markers), len(SHAPE_INDEX))),
         markers.fps,
@@ -107,8 +122,15 @@ def from_markers(markers: Markers, *, neutral_frame: int = 0) -> Source:
         notices=markers.notices,
     )
     moved = still_of_noise(still - neutral)
-    sizes = _gaps(bridge(moved)[0] + neutral, neutral, markers)
-    return Source(moved, neutral, markers.names, sizes, take, head)
+    made = Source(moved, neutral, markers.names, np.full((len(markers), len(GAPS)), np.nan), take, head)
+    return with_gaps(made, landmarks or {})
+
+
+def with_gaps(source: Source, landmarks: Mapping[str, str]) -> Source:
+    """Return a capture with lips and lids measured by its markers, as far as it has those for it; `from_markers` has both."""
+    called = {landmarks.get(name, name): column for column, name in enumerate(source.names)}
+    sizes = _gaps(bridge(source.displacements)[0] + source.neutral, source.neutral, called)
+    return replace(source, gaps=sizes)
 
 
 def still_of_noise(displacements: Array) -> Array:
@@ -116,17 +138,17 @@ def still_of_noise(displacements: Array) -> Array:
     return np.where(np.isfinite(displacements), denoise(bridge(displacements)[0]), np.nan)
 
 
-def _gaps(positions: Array, neutral: Array, markers: Markers) -> Array:
-    """Return how far lips and lids are apart, (frames, gaps) mm, as far as the capture has the markers for it."""
+def _gaps(positions: Array, neutral: Array, columns: Mapping[str, int]) -> Array:
+    """Return how far lips and lids are apart, (frames, gaps) mm, of markers in the columns of their landmarks."""
     sizes = np.full((len(positions), len(GAPS)), np.nan)
-    for column, gap in enumerate(GAPS):
+    for index, gap in enumerate(GAPS):
         pair = MARKER_GAPS.get(gap.name, ())
-        if pair and all(name in markers.names for name in pair):
-            upper, lower = (markers.names.index(name) for name in pair)
+        if pair and all(name in columns for name in pair):
+            upper, lower = (columns[name] for name in pair)
             apart = np.linalg.norm(positions[:, upper] - positions[:, lower], axis=1)
-            rest = float(np.linalg.norm(neutral[upper] - neutral[lower]))
+            rest = max(float(np.linalg.norm(neutral[upper] - neutral[lower])), 1e-9)
             lips = gap.name == "lips"
-            sizes[:, column] = np.maximum(apart - rest, 0.0) if lips else LIDS_REST_MM * apart / rest
+            sizes[:, index] = np.maximum(apart - rest, 0.0) if lips else LIDS_REST_MM * apart / rest
     return sizes
 
 

@@ -11,6 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from app.settings import Settings
 from app.window.main_window import MainWindow
+from app.window.screen import DESIGNED
 from engine.formats import read_take
 from engine.performance import demo
 
@@ -21,8 +22,9 @@ def window(qtbot: QtBot, tmp_path: Path) -> Iterator[MainWindow]:
     opened = MainWindow(
         read_take(demo.BUNDLED), demo.BUNDLED, Settings(tmp_path / "settings.ini"), unsaved=tmp_path / "unsaved"
     )
-    with qtbot.waitSignals([opened.inference.ready, opened.preview.drawing.done], timeout=60_000):
+    with qtbot.waitSignal(opened.inference.ready, timeout=60_000):
         opened.show()
+    opened.resize(DESIGNED)  # the offscreen screen is smaller
     settled(qtbot, opened)
     yield opened
     opened.session.undo.setClean()
@@ -65,7 +67,7 @@ def settled(qtbot: QtBot, window: MainWindow) -> None:
 
     def nothing_left() -> bool:
         drawn = window.preview.drawing.idle and not window.preview._still.isActive()
-        return window.inference.idle and drawn and window.flagging.idle
+        return window.inference.idle and drawn and window.flagging.idle and not window.curves.moving
 
     qtbot.waitUntil(nothing_left, timeout=30_000)
     qtbot.wait(20)  # results that were finished are still on their way to this thread

@@ -103,8 +103,8 @@ def test_copy_and_paste_of_a_range(qtbot: QtBot, window: MainWindow) -> None:
     session.move_playhead(200)
     QTest.keyClick(window, Qt.Key.Key_V, Qt.KeyboardModifier.ControlModifier)
     qtbot.waitUntil(lambda: session.undo.count() == 1, timeout=10_000)
-    np.testing.assert_array_equal(session.take.weights[204:216], session.original.weights[44:56])
-    np.testing.assert_array_equal(session.take.weights[220:], session.original.weights[220:])
+    np.testing.assert_array_equal(session.take.weights[200:220], session.original.weights[40:60])
+    np.testing.assert_array_equal(session.take.weights[224:], session.original.weights[224:])
 
 
 def test_smoothing_is_previewed_then_kept_or_dropped(qtbot: QtBot, window: MainWindow) -> None:

@@ -35,7 +35,8 @@ def click_into(box: QAbstractSpinBox) -> None:
 
 
 def test_a_whole_number_is_stepped_and_typed(window: MainWindow, done: list[str]) -> None:
-    box = window.brush.radius
+    window.session.choose_tool("pin")
+    box = window.pins.before
     click_into(box)
     before = box.value()
     press(box, Key.Key_Up)

@@ -61,7 +61,11 @@ def edit_until_killed(folder: Path, seed: int, tell: Connection, *, frames: int 
         else:
             start, length = int(rng.integers(0, FRAMES - 200)), int(rng.integers(1, 200))
             weights, asked = rng.random((length, len(SHAPES))), rng.random((length, len(CONTROLS)))
-            patch = SimpleNamespace(start=start, stop=start + length, weights=weights, asked=asked, reached=asked)
+            lost = np.zeros(length, bool)
+            patch = SimpleNamespace(  # a Patch would load torch, hundreds of times
+                start=start, stop=start + length, weights=weights, asked=asked, reached=asked, lost=lost
+            )
+            patch.settled = lambda _, patch=patch: patch
             command = EditCommand(session, patch, f"edit {session.undo.count()}")
             edits = (*now.edits[: now.position], command.edit)
             tell.send(("doing", fingerprint(replace(now, edits=edits, position=len(edits)))))

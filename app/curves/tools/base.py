@@ -46,6 +46,9 @@ class Tool:
             self.panel.show_dot(None)
             self.panel.show_readout("", QPointF())
 
+    def placed(self) -> None:
+        """Follow lanes that are at other places, or show other frames."""
+
     def wheel(self, notches: float) -> None:
         """Change the tool's size."""
 
@@ -69,7 +72,7 @@ class Tool:
             self.panel.inference.run(replace)
             return
         asked = session.controls[start : start + len(curve)].copy()
-        asked[:, column] = curve.clip(min=0.0)
+        asked[:, column] = curve.clip(min=CURVES[lane].lowest)
         self.panel.inference.ask(start, asked)
 
     def done(self, verb: str, lane: int, at: QPointF) -> None:

@@ -9,6 +9,8 @@ from app.curves.brush import pulled, reach
 from app.curves.tools.base import FINE, Stroke
 from app.session.curve_table import CURVES
 
+WHEEL_STEP = 1.15  # the radius grows by a notch
+
 
 class DragTool(Stroke):
     """Pull a curve anywhere; a soft brush bends it and the face follows."""
@@ -44,7 +46,7 @@ class DragTool(Stroke):
     def wheel(self, notches: float) -> None:
         """Widen or narrow the brush."""
         session = self.panel.session
-        session.set_brush(radius_frames=round(session.radius_frames * 1.15**notches + (notches > 0)))
+        session.set_brush(radius_s=session.radius_s * WHEEL_STEP**notches)
         if self._lane is not None:
             self._pull()
 
@@ -59,13 +61,18 @@ class DragTool(Stroke):
         session = self.panel.session
         start, stop = reach(self._centre, session.radius_frames, len(session.take))
         curve = session.curve(self._lane)[start:stop]
-        radius = session.radius_frames
-        bent = pulled(curve, start, self._centre, by=self._by, radius_frames=radius, strength=session.strength)
-        self.ask(self._lane, start, bent)
+        kind, radius, strength = CURVES[self._lane], session.radius_frames, session.strength
+        limits = {"floor": kind.lowest, "ceiling": kind.highest}
+        self.ask(
+            self._lane,
+            start,
+            pulled(curve, start, self._centre, by=self._by, radius_frames=radius, strength=strength, **limits),
+        )
 
     def _hint(self, lane: int, frame: int, at: QPointF) -> None:
         session, shown, curve = self.panel.session, self.panel.lane(lane), CURVES[lane]
-        asked = max(0.0, float(session.curve(lane)[frame]) + session.strength * self._by)
+        asked = float(session.curve(lane)[frame]) + session.strength * self._by
+        asked = min(max(asked, curve.lowest), curve.highest)
         reached = session.value(lane, frame)
         self.panel.show_brush(shown, reach(frame, session.radius_frames, len(session.take)))
         self.panel.show_dot(shown, frame, reached)

@@ -6,11 +6,12 @@ import numpy as np
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 
+from app.curves.brush import eased_to
 from app.curves.tools.base import Stroke
 from app.session.curve_table import CURVES
 from engine.take import Array
 
-JOIN_FRAMES = 3  # over which a sketch eases into what lies beside it
+JOIN_S = 0.12  # over which a sketch eases into what lies beside it
 
 
 class DrawTool(Stroke):
@@ -54,25 +55,15 @@ class DrawTool(Stroke):
 
     def _point(self, lane: int, at: QPointF) -> tuple[int, float]:
         frame = int(np.clip(round(self.panel.frame_at(at)), 0, len(self.panel.session.take) - 1))
-        return frame, max(0.0, self.panel.lane(lane).value_at(self.panel.mapToScene(at.toPoint()).y()))
+        return frame, max(CURVES[lane].lowest, self.panel.lane(lane).value_at(self.panel.mapToScene(at.toPoint()).y()))
 
     def _asked(self, lane: int) -> tuple[int, Array]:
         """Return the sketch, with a few frames at either side that lead into it."""
         frames = sorted(self._sketch)
-        curve = self.panel.session.curve(lane)
-        start, stop = max(0, frames[0] - JOIN_FRAMES), min(len(curve), frames[-1] + 1 + JOIN_FRAMES)
-        asked = curve[start:stop].copy()
-        values = np.array([self._sketch[frame] for frame in frames])
-        asked[frames[0] - start : frames[-1] + 1 - start] = values
-        for step in range(1, JOIN_FRAMES + 1):
-            share = 1 - step / (JOIN_FRAMES + 1)
-            for frame, edge, value in (
-                (frames[0] - step, frames[0], values[0]),
-                (frames[-1] + step, frames[-1], values[-1]),
-            ):
-                if start <= frame < stop:
-                    asked[frame - start] += share * (value - curve[edge])
-        return start, asked
+        session, values = self.panel.session, np.array([self._sketch[frame] for frame in frames])
+        ease = JOIN_S * session.take.fps
+        span = frames[0], frames[-1] + 1
+        return eased_to(session.curve(lane), span, values, before_frames=ease, after_frames=ease)
 
 
 def _ascending(frames: tuple[int, int], values: tuple[float, float]) -> tuple[tuple[int, int], tuple[float, float]]:

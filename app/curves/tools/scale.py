@@ -6,13 +6,14 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QMouseEvent
 
+from app.curves.brush import eased_to
 from app.curves.tools.base import Tool
 from app.session.curve_table import CURVES
 from engine.take import Array
 from engine.words import counted
 
 HANDLE_PX = 9
-JOIN_FRAMES = 4
+JOIN_S = 0.15  # over which a stretch made longer joins what it runs into
 
 
 def scaled_in_value(curve: Array, factor: float) -> Array:
@@ -21,21 +22,17 @@ def scaled_in_value(curve: Array, factor: float) -> Array:
     return np.asarray(line + factor * (curve - line))
 
 
-def scaled_in_time(curve: Array, start: int, stop: int, new_stop: int) -> tuple[int, Array]:
+def scaled_in_time(curve: Array, start: int, stop: int, new_stop: int, *, join_frames: float) -> tuple[int, Array]:
     """Return the first frame and the rows, (n,), of a curve whose frames [start, stop) now last until `new_stop`.
 
-    What the stretch leaves free is bridged by a straight line; what it runs into it joins over a few frames.
+    What the stretch leaves free is bridged by a straight line; what it runs into it joins over `join_frames`.
     """
     inside = np.interp(np.linspace(start, stop - 1, new_stop - start), np.arange(len(curve)), curve)
-    end = min(len(curve), max(stop, new_stop + JOIN_FRAMES))
-    rows = curve[start:end].copy()
+    if new_stop >= stop:
+        return eased_to(curve, (start, new_stop), inside, before_frames=0.0, after_frames=join_frames)
+    rows = curve[start:stop].copy()
     rows[: len(inside)] = inside
-    if new_stop < stop:
-        rows[len(inside) - 1 : stop - start] = np.linspace(inside[-1], curve[stop - 1], stop - new_stop + 1)
-    else:
-        for step, row in enumerate(range(len(inside), len(rows)), start=1):
-            share = 1 - step / (JOIN_FRAMES + 1)
-            rows[row] += share * (inside[-1] - rows[row])
+    rows[len(inside) - 1 :] = np.linspace(inside[-1], curve[stop - 1], stop - new_stop + 1)
     return start, rows
 
 
@@ -98,6 +95,10 @@ class ScaleTool(Tool):
         super().leave()
         self._show_box()
 
+    def placed(self) -> None:
+        """Let the box follow what it is around."""
+        self._show_box()
+
     def _hover(self, lane: int | None, at: QPointF) -> None:
         handle = self._handle_at(at)
         shapes = {"value": Qt.CursorShape.SizeVerCursor, "time": Qt.CursorShape.SizeHorCursor}
@@ -115,11 +116,12 @@ class ScaleTool(Tool):
         if self._held == "value":
             box = self.panel.lane(self._lane).scene_box()
             factor = max(0.0, 1.0 + 2.0 * (self._pressed.y() - at.y()) / max(1.0, box.height()))
-            self.ask(self._lane, start, scaled_in_value(curve[start:stop], factor).clip(min=0.0))
+            self.ask(self._lane, start, scaled_in_value(curve[start:stop], factor))
             self.panel.show_readout(f"{CURVES[self._lane].title} × {factor:.2f}", at)
         else:
             new_stop = int(np.clip(round(self.panel.frame_at(at)) + 1, start + 2, len(curve)))
-            self.ask(self._lane, *scaled_in_time(curve, start, stop, new_stop))
+            join = JOIN_S * session.take.fps
+            self.ask(self._lane, *scaled_in_time(curve, start, stop, new_stop, join_frames=join))
             self.panel.show_readout(f"{stop - start} → {counted(new_stop - start, 'frame')}", at)
 
     def _box(self) -> QRectF:

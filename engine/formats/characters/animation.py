@@ -22,8 +22,17 @@ MOST_TARGETS = 200
 ENDINGS = (".glb", *usd.ENDINGS, ".npz")
 
 
+def require_ending(path: Path) -> None:
+    """Raise `FormatError` for a file that a moving mesh cannot be written to: before the work, not after it."""
+    if path.suffix.lower() not in ENDINGS:
+        raise FormatError(
+            f"{path.name} is not a kind of file that a moving mesh can be in.", f"Use one of: {', '.join(ENDINGS)}."
+        )
+
+
 def write(mesh: MovingMesh, path: Path) -> None:
     """Write a moving mesh to a file of a kind in `ENDINGS`; an existing file is replaced whole or left as it was."""
+    require_ending(path)
     ending = path.suffix.lower()
     if ending == ".npz":
         buffer = io.BytesIO()
@@ -31,12 +40,8 @@ def write(mesh: MovingMesh, path: Path) -> None:
         write_bytes(path, [buffer.getvalue()])
     elif ending == ".glb":
         write_bytes(path, [_glb(mesh)])
-    elif ending in usd.ENDINGS:
-        usd.write(mesh, path)
     else:
-        raise FormatError(
-            f"{path.name} is not a kind of file that a moving mesh can be in.", f"Use one of: {', '.join(ENDINGS)}."
-        )
+        usd.write(mesh, path)
 
 
 def targets(mesh: MovingMesh) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:

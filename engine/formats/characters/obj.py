@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
+from engine.formats.budget import BUDGET
 from engine.formats.characters.names import match_names, plain
 from engine.formats.characters.raw import MAX_SHAPES, MAX_VERTICES, RawCharacter, check
 from engine.formats.content import content_of, unread
@@ -15,6 +16,7 @@ from engine.take import Array
 from engine.words import counted
 
 MAX_BYTES = 512 << 20
+LINES_PER_NODE = 100  # ten million lines in all: what a head of two million vertices has
 NEUTRAL_WORDS = ("neutral", "basis", "base", "rest")
 
 
@@ -30,6 +32,7 @@ def read(folder: Path) -> RawCharacter:
         raise FormatError(f"{folder.name} holds {len(paths)} OBJ files; a character has at most {MAX_SHAPES}.")
     neutral_path = _neutral(paths, folder)
     vertices, faces = read_obj(neutral_path)
+    BUDGET.require(folder.name, values=3 * len(vertices) * len(paths))
     shapes = {}
     for path in paths:
         if path != neutral_path:
@@ -61,7 +64,9 @@ def _neutral(paths: list[Path], folder: Path) -> Path:
 
 def read_obj(path: Path, *, with_faces: bool = True) -> tuple[Array, npt.NDArray[np.int32]]:
     """Return vertices (n, 3) and triangles (t, 3); larger polygons become fans. Raises `FormatError` with the line."""
-    lines = content_of(path, at_most=MAX_BYTES).split(b"\n")
+    content = content_of(path, at_most=MAX_BYTES)
+    BUDGET.require(path.name, nodes=content.count(b"\n") // LINES_PER_NODE)
+    lines = content.split(b"\n")
     places = [number for number, line in enumerate(lines) if line[:2] in (b"v ", b"v\t")]
     if not places:
         raise FormatError(f"{path.name} holds no vertices.", "Is it an OBJ file?")

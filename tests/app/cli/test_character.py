@@ -6,14 +6,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
 
 from app import cli
-from engine.character import BUNDLED, bundled, load
+from engine.character import BUNDLED, bundled, load, save
 from engine.formats import read_take
 from engine.formats.characters.animation import write
 from engine.formats.characters.moving import MovingMesh
+from engine.formats.markers import write as save_markers
 from engine.performance import demo
 from engine.spacetime.layout import standard
+from engine.take import SHAPE_INDEX, SHAPES
+from tests.heads import capture, write_glb
 
 
 @pytest.fixture
@@ -120,3 +124,87 @@ def test_landmarks_are_found_anew_around_those_placed_by_hand(
     assert found["chin"] == chin and set(found) == set(head.landmarks)
     for name in set(found) - {"chin"}:
         assert np.linalg.norm(head.neutral[found[name]] - head.neutral[head.landmarks[name]]) < 3, name
+
+
+def test_a_vrm_with_the_usual_traps_is_imported_and_its_table_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = {
+        "mouthOpen": "mouthClose",
+        "jawOpen": "jawOpen",
+        "eyeBlinkLeft": "eyeBlinkLeft",
+        "eyeBlinkRight": "eyeBlinkRight",
+    }
+    path = write_glb(tmp_path / "head.glb", names).rename(tmp_path / "head.vrm")
+    assert cli.run(["character", "import", str(path), "-o", str(tmp_path / "a.npz")]) == 0
+    told = capsys.readouterr().out
+    assert "Read in m, y up, facing z." in told and "Left out: mouthOpen (jawOpen is there)." in told
+    made = load(tmp_path / "a.npz")
+    np.testing.assert_allclose(made.deltas[SHAPE_INDEX["jawOpen"]], bundled().deltas[SHAPE_INDEX["jawOpen"]], atol=0.05)
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        (["--landmark", "ear=3"], "no landmark called 'ear'"),
+        (["--unit", "m"], "would hardly be seen"),
+        (["--unit", "yard"], "no unit called 'yard'"),
+        (["--up", "w"], "no upward axis called 'w'"),
+        (["--facing", "1e9"], "turned by -360 to 360"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_written(
+    more: list[str], says: str, foreign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "anna.npz"
+    assert cli.run(["character", "import", str(foreign), "-o", str(out), *more]) == 2
+    assert says in capsys.readouterr().err and not out.exists()
+
+
+def test_facing_is_corrected_by_hand(foreign: Path, tmp_path: Path) -> None:
+    out = tmp_path / "anna.npz"
+    assert cli.run(["character", "import", str(foreign), "-o", str(out), "--facing", "90", "--up", "y"]) == 0
+    turned = load(out).neutral
+    np.testing.assert_allclose(turned[:, 0], -bundled().neutral[:, 2], atol=0.01)
+
+
+@pytest.mark.parametrize("still", [False, True])
+def test_a_driven_head_goes_and_turns_as_the_markers_do(still: bool, tmp_path: Path) -> None:
+    weights = np.zeros((12, len(SHAPES)))
+    angles = np.linspace([0, 0, 0], [25, 10, -8], 12)
+    turns = Rotation.from_euler("yxz", angles, degrees=True).as_matrix()
+    lab = np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])
+    save_markers(capture(weights, turn=lab, heads=turns), tmp_path / "m.trc")
+    save(bundled(), tmp_path / "head.npz")
+    arguments = [
+        "drive",
+        str(tmp_path / "m.trc"),
+        "--mesh",
+        str(tmp_path / "head.npz"),
+        "-o",
+        str(tmp_path / "out.npz"),
+    ]
+    assert cli.run(arguments + (["--still"] if still else [])) == 0
+    with np.load(tmp_path / "out.npz") as made:
+        frames = made["vertices"]
+    rest = bundled().neutral.astype(float)
+    wanted = rest if still else rest @ turns[-1].T
+    assert np.linalg.norm(frames[-1] - wanted, axis=1).max() < 1.0
+
+
+def test_a_flat_shaded_head_is_driven_without_tearing_and_written_as_it_came(foreign: Path, tmp_path: Path) -> None:
+    flat = tmp_path / "flat"
+    flat.mkdir()
+    for path in foreign.glob("*.obj"):
+        lines = path.read_text().splitlines()
+        vertices = [line for line in lines if line.startswith("v ")]
+        corners = [int(cell) for line in lines if line.startswith("f ") for cell in line.split()[1:]]
+        faces = [f"f {n} {n + 1} {n + 2}" for n in range(1, len(corners), 3)]
+        (flat / path.name).write_text("\n".join([*(vertices[corner - 1] for corner in corners), *faces]) + "\n")
+    assert cli.run(["drive", str(demo.BUNDLED), "--mesh", str(flat), "-o", str(tmp_path / "out.npz")]) == 0
+    corners = bundled().triangles.ravel()
+    with np.load(tmp_path / "out.npz") as made:
+        frames, faces = made["vertices"], made["faces"]
+    assert frames.shape[1] == len(corners) and len(faces) == len(bundled().triangles)
+    for vertex in np.unique(corners)[::400]:
+        assert not np.ptp(frames[:, corners == vertex], axis=1).any()

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +9,7 @@ import pytest
 
 from app import cli
 from app.cli import labelled
-from engine.character import BUNDLED, bundled
+from engine.character import BUNDLED, bundled, save
 from engine.formats import labels, read_take, write_take
 from engine.formats.capture import Markers
 from engine.formats.markers import write
@@ -16,6 +18,7 @@ from engine.performance import demo
 from engine.spacetime.layout import standard
 from engine.spacetime.source import from_take
 from engine.take import SHAPE_INDEX, SHAPES, Take
+from tests.heads import capture
 
 DEMO = str(demo.BUNDLED)
 SMILE = SHAPE_INDEX["mouthSmileLeft"]
@@ -157,7 +160,8 @@ def test_suggestions_go_on_from_a_label_file(tmp_path: Path, capsys: pytest.Capt
 
 
 def test_markers_and_labels_move_a_head_of_the_label_file(tmp_path: Path) -> None:
-    labels.write(labels.LabelFile({15: {"jawOpen": 0.5}}, BUNDLED), tmp_path / "labels.json")
+    shutil.copy(BUNDLED, tmp_path / "head.npz")
+    labels.write(labels.LabelFile({15: {"jawOpen": 0.5}}, Path("head.npz")), tmp_path / "labels.json")
     out = tmp_path / "out.csv"
     arguments = ["--method", "manifold", "--labels", str(tmp_path / "labels.json"), "-o", str(out)]
     assert cli.run(["retarget", str(_markers(tmp_path)), *arguments]) == 0
@@ -186,3 +190,47 @@ def test_unusable_labels_are_one_sentence(
     out = tmp_path / "out.csv"
     assert cli.run(["retarget", DEMO, *[part.format(**places) for part in arguments], "-o", str(out)]) == 2
     assert says in capsys.readouterr().err and not out.exists()
+
+
+def test_markers_of_another_studio_move_the_bundled_head_without_a_landmark_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    weights = np.zeros((30, len(SHAPES)))
+    weights[:, SHAPE_INDEX["jawOpen"]] = 0.6 * np.sin(np.linspace(0, np.pi, 30))
+    write(capture(weights), tmp_path / "studio.trc")
+    out = tmp_path / "out.csv"
+    assert cli.run(["retarget", str(tmp_path / "studio.trc"), "-o", str(out)]) == 0
+    told = capsys.readouterr().out
+    assert "Mouth_Up" in told and "lip_upper" in told and "by place" in told
+    jaw = read_take(out).weights[:, SHAPE_INDEX["jawOpen"]]
+    assert abs(jaw[15] - 0.6) < 0.2 and jaw[0] < 0.1
+    arguments = ["retarget", str(tmp_path / "studio.trc"), "-o", str(out), "--marker", "Mouth_Up=philtrum"]
+    assert cli.run(arguments) == 0
+    assert "philtrum" in capsys.readouterr().out
+    assert cli.run([*arguments[:-1], "Mund=chin"]) == 2
+    assert "no marker called 'Mund'" in capsys.readouterr().err
+
+
+def test_what_a_head_cannot_do_is_not_written_as_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    head = bundled()
+    deltas = head.deltas.copy()
+    for name in ("tongueOut", "eyeLookUpLeft", "mouthPucker"):
+        deltas[SHAPE_INDEX[name]] = 0.0
+    save(replace(head, deltas=deltas, name="poor"), tmp_path / "poor.npz")
+    weights = np.zeros((10, len(SHAPES)))
+    weights[:, [SHAPE_INDEX[name] for name in ("tongueOut", "eyeLookUpLeft", "eyeLookUpRight")]] = 0.5
+    write_take(Take(weights, 30.0), tmp_path / "take.csv")
+    out = tmp_path / "out.csv"
+    arguments = ["retarget", str(tmp_path / "take.csv"), "--character", str(tmp_path / "poor.npz"), "-o", str(out)]
+    assert cli.run(arguments) == 0
+    made = read_take(out).weights
+    assert not made[:, [SHAPE_INDEX[name] for name in ("tongueOut", "eyeLookUpLeft", "mouthPucker")]].any()
+    assert "poor has no eyeLookUpLeft, tongueOut" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", [["retarget"], ["drive", "--mesh", "head.obj"]])
+def test_an_ending_that_cannot_be_written_is_told_before_anything_is_read(
+    command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.run([*command, "no_such_take.csv", "-o", str(tmp_path / "t.txt")]) == 2
+    assert "t.txt is not a kind of file" in capsys.readouterr().err

@@ -6,7 +6,6 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.curves.brush import falloff, pulled, reach
 from app.curves.line import _whole_parts
 from app.curves.peaks import BLOCK, Thinned, on_screen, overlaid, peaks
 
@@ -63,14 +62,3 @@ def test_a_line_has_a_gap_wherever_there_is_no_value(gaps: list[bool]) -> None:
 def test_a_view_shows_one_frame_more_on_either_side() -> None:
     assert on_screen(100, (10.0, 20.0)) == (9, 22)
     assert on_screen(15, (0.0, 14.0)) == (0, 15)
-
-
-@given(st.integers(0, 50), st.integers(1, 40))
-def test_the_brush_moves_only_its_reach(centre: int, radius: int) -> None:
-    start, stop = reach(centre, radius, 51)
-    follows = falloff(np.arange(51.0), centre, radius)
-    assert follows[centre] == 1.0
-    assert (follows[:start] == 0).all() and (follows[stop:] == 0).all()
-    curve = np.full(stop - start, 5.0)
-    lowered = pulled(curve, start, centre, by=-20.0, radius_frames=radius, strength=1.0)
-    assert lowered.min() == 0.0 and (lowered <= curve).all()

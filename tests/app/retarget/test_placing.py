@@ -78,7 +78,7 @@ def test_landmark_files_are_written_and_read(
     choose_file += [path, path]
     click(aimed.places.save_button)
     assert aimed.retargeting.target.head is not None
-    assert read(path, vertices=len(aimed.retargeting.target.head.neutral))["chin"] == 99
+    assert read(path, head=aimed.retargeting.target.head)["chin"] == 99
     aimed._session.undo.undo()
     click(aimed.places.read_button)
     assert aimed.retargeting.target.places["chin"] == 99

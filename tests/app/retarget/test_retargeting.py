@@ -112,7 +112,7 @@ def test_a_project_that_is_opened_again_shows_the_head_it_was_kept_on(
     session.open(contents.original, None)
     assert session.character is None
     state = replay(contents)
-    aimed.retargeting._heads = {"": None}  # as in a program that was just started
+    aimed.retargeting._kept_heads.forget()  # as in a program that was just started
     measured = tuple(bundled_measurer().measure(take.weights) for take in (contents.original, state.take))
     session.restore(contents, None, restored(session, contents, state), state, measured)
     qtbot.waitUntil(lambda: session.character is not None, timeout=20_000)
@@ -141,7 +141,8 @@ def test_an_edit_of_the_take_drops_what_was_solved_from_it(qtbot: QtBot, aimed: 
     click(aimed.panel.solve_button)
     qtbot.waitUntil(lambda: aimed.retargeting.result is not None, timeout=60_000)
     session = aimed._session
-    session.replace_rows(0, session.take.weights[:1] * 0.5, session.controls[:1], session.asked[:1])
+    take = session.take
+    session.replace_rows(0, take.weights[:1] * 0.5, session.controls[:1], session.asked[:1], take.lost[:1])
     assert aimed.retargeting.result is None
 
 

@@ -3,7 +3,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +15,7 @@ from app.session.keeper import Keeper
 from app.session.opening import Wish, opened
 from engine import project
 from engine.controls import measure
+from engine.editing import Patch
 from engine.errors import EngineError
 from engine.project import Marks, Note, Pin, Project, Span
 from engine.take import SHAPES, Take
@@ -45,7 +45,7 @@ def push(session: Session, seed: int) -> EditCommand:
     weights = rng.random((12, len(SHAPES)))
     reached = measure(weights)
     asked = np.where(rng.random(reached.shape) < 0.3, reached + 1.0, session.controls[start : start + 12])
-    patch = SimpleNamespace(start=start, stop=start + 12, weights=weights, asked=asked, reached=reached)
+    patch = Patch(start, weights, asked, reached)
     command = EditCommand(session, patch, f"edit {seed}", inputs={"seed": seed})
     session.undo.push(command)
     return command
@@ -149,7 +149,7 @@ def test_a_step_that_was_merged_is_kept_as_it_became(qtbot: QtBot, make: Made) -
     session = first._session
     for value in (0.25, 0.5):
         rows = np.full((5, len(SHAPES)), value)
-        patch = SimpleNamespace(start=2, stop=7, weights=rows, asked=measure(rows), reached=measure(rows))
+        patch = Patch(2, rows, measure(rows), measure(rows))
         kept(qtbot, first, lambda patch=patch: session.undo.push(Nudge(session, patch, "nudge")))
     assert session.undo.count() == 1
     first.close()

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine.character import load
+from engine.character import bundled, load
 from engine.errors import EngineError, FormatError
 from engine.formats import audio as sound
 from engine.formats import cues, labels, markers, markers_layout, read_take
@@ -27,7 +27,7 @@ READERS: dict[str, Callable[[Path], object]] = {
     "capture.csv": markers.read,
     "capture.trc": markers.read,
     "capture.c3d": markers.read,
-    "places.csv": lambda path: markers_layout.read(path, vertices=10),
+    "places.csv": lambda path: markers_layout.read(path, head=bundled()),
     "head.npz": character_of,
     "head.glb": character_of,
     "head.obj": character_of,

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -84,3 +85,15 @@ def test_any_content_gives_labels_or_a_sentence(content: bytes, ending: str, tmp
         assert "\n" not in str(error)
     else:
         assert all(shape in SHAPES for weights in found.labels.values() for shape in weights)
+
+
+@pytest.mark.parametrize("target", ["../head.npz", "/etc/passwd", "a/../../head.npz", "link/head.npz"])
+def test_a_target_outside_the_folder_is_refused(target: str, tmp_path: Path) -> None:
+    folder = tmp_path / "labels"
+    folder.mkdir()
+    (folder / "link").symlink_to(tmp_path)
+    path = folder / "l.json"
+    path.write_text(json.dumps({"target": target, "labels": [{"frame": 1, "weights": {}}]}))
+    with pytest.raises(FormatError) as caught:
+        labels.read(path)
+    assert len(str(caught.value)) < 400

@@ -336,3 +336,21 @@ def test_timecodes_for_absent_rows_are_what_the_file_would_have_said(style: Stam
     put = read_times(whole_codes)
     assert right is not None and put is not None
     assert np.abs(right[1] - put[1]).max() < (1 / 60 if style is whole_sixtieths else 2e-3) + 1e-9
+
+
+PIECES = ["0", "59", "1e300", "-1", "nan", "inf", "1e15", "9" * 20, "", "x", "30.999", "86400", "1e-300", "-1e300"]
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_whatever_stands_there_rows_keep_their_order(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    for _ in range(10):
+        count, fields = int(rng.choice([1, 2, 3, 5, 40])), int(rng.integers(1, 6))
+        codes = [f"00:00:{row // 30:02d}:{row % 30:02d}" for row in range(count)]
+        for row in range(count if rng.random() < 0.5 else 3):
+            codes[row % count] = str(rng.choice([":", ";"])).join(rng.choice(PIECES, fields))
+        texts = [code.encode() for code in codes]
+        clock = clock_of(texts)
+        assert 0 < clock.fps < 1001 and 0 <= clock.start_s <= 86_400, codes
+        assert clock.rows[0] == 0 and (np.diff(clock.rows) >= 1).all() and len(clock.rows) == count
+        assert len(timecodes_between(texts, clock.rows, [0, int(clock.rows[-1])], fps=clock.fps)) == 2

@@ -73,3 +73,12 @@ def test_extended_controls_change_their_own_shapes_alone(regressor: Regressor) -
     others = np.setdiff1d(np.arange(len(SHAPES)), spoken)
     np.testing.assert_array_equal(given[:, others], without[:, others])
     assert (np.abs(given[:, spoken] - without[:, spoken]).max(axis=0) > 1e-3).all()
+
+
+def test_answers_about_other_rows_of_the_same_curves_are_not_given(regressor: Regressor) -> None:
+    """On a short take every window reads all of it: only the rows tell the questions apart."""
+    curves, answers = np.random.default_rng(3).uniform(0, 50, (90, 8)), Answers()
+    regressor.infer_range(curves, 10, 40, answers=answers, remember=True)
+    for start, stop in ((20, 50), (5, 60)):
+        alone = regressor.infer_range(curves, start, stop)
+        np.testing.assert_array_equal(regressor.infer_range(curves, start, stop, answers=answers), alone)

@@ -47,3 +47,15 @@ def test_the_one_file_that_is_no_shape_is_the_neutral_one(tmp_path: Path) -> Non
 def test_what_is_wrong_is_named(files: dict[str, str], says: str, tmp_path: Path) -> None:
     with pytest.raises(FormatError, match=says):
         read(folder(tmp_path, **files))
+
+
+def test_shapes_and_lines_are_counted_before_they_are_held(tmp_path: Path) -> None:
+    triangle = "".join(f"v {n} {n % 7} {n % 3}\n" for n in range(200_000)) + "f 1 2 3\n"
+    for number in range(170):
+        path = tmp_path / ("neutral.obj" if number == 0 else f"shape{number}.obj")
+        path.write_text(triangle) if number == 0 else path.write_text("v 0 0 0\n")
+    with pytest.raises(FormatError, match="asks for 102,000,000 numbers"):
+        read(tmp_path)
+    (tmp_path / "long.obj").write_text("\n" * 11_000_000)
+    with pytest.raises(FormatError, match="parts"):
+        read(tmp_path / "long.obj")

@@ -1,0 +1,116 @@
+"""What `retake retarget` and `retake drive` carry: a take, or markers with what each of them was taken for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.reading import open_take
+from engine.errors import EditError
+from engine.formats.content import require_file, unread
+from engine.words import counted
+
+if TYPE_CHECKING:
+    from engine.character import Character
+    from engine.formats.characters.marker_places import MarkerTable
+    from engine.spacetime.layout import Layout
+    from engine.spacetime.source import Source
+
+MARKER_HELP = "For markers: correct what one was taken for, its name=a landmark; name= leaves it out."
+
+
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """A performance on its way to another head.
+
+    Attributes
+    ----------
+    source : as marker motion
+    table : what each marker of a capture was taken for; none for a take
+    """
+
+    source: Source
+    table: MarkerTable | None = None
+
+    def layout(self, head: Character) -> Layout | None:
+        """Return which vertex of a head carries which marker; none for a take, whose markers are the standard ones."""
+        from engine.formats.characters.marker_places import places_on
+        from engine.spacetime.layout import named
+
+        if self.table is None:
+            return None
+        return named(places_on(head, self.source.neutral, self.source.names, self.table))
+
+    def show(self) -> None:
+        """Print what each marker was taken for, where that was not told by its name alone."""
+        from app.cli.tables import show
+
+        if self.table is None or all(row.how == "by name" for row in self.table.rows):
+            return
+        rows = [
+            {"marker": row.marker, "taken for": row.landmark or "a place of its own", "how": row.how, "mm": row.away_mm}
+            for row in self.table.rows
+        ]
+        show("Markers", rows, as_json=False)
+
+
+def performance_of(
+    path: Path,
+    *,
+    neutral: int,
+    unit: str | None,
+    fps: float | None,
+    sides: str,
+    changes: dict[str, str] | None = None,
+    placed: bool = False,
+) -> Carried:
+    """Read a take or a capture; raises `EngineError`.
+
+    Parameters
+    ----------
+    path : the file
+    neutral : for a capture, a frame in which the face is at rest
+    unit : for a capture, instead of what the file says
+    fps : instead of what the file says
+    sides : of a take, as `--sides` has it
+    changes : landmarks by marker that were corrected
+    placed : whether a landmark file says where the markers are: their names need not be understood then
+    """
+    from engine.character import bundled
+    from engine.formats import markers
+    from engine.formats.characters.marker_places import match_markers
+    from engine.spacetime.source import from_markers, from_take
+
+    if path.suffix.lower() not in markers.ENDINGS or is_take(path):
+        if changes:
+            raise EditError("A take has no markers to correct.", "Leave out --marker.")
+        return Carried(from_take(open_take(path, fps, sides), bundled()))
+    capture = markers.read(path, unit=unit, fps=fps)
+    if not 0 <= neutral < len(capture):
+        raise EditError(f"Frame {neutral} is not within the capture, which has {counted(len(capture), 'frame')}.")
+    if placed:
+        return Carried(from_markers(capture, neutral_frame=neutral))
+    table = match_markers(capture.positions[neutral], capture.names).corrected(changes or {})
+    return Carried(from_markers(capture, neutral_frame=neutral, turn=table.turn, landmarks=table.landmarks), table)
+
+
+def is_take(path: Path) -> bool:
+    """Return whether a file begins as a Live Link Face take does; a CSV may also hold markers."""
+    require_file(path)
+    try:
+        with path.open("rb") as file:
+            return file.read(16).removeprefix(b"\xef\xbb\xbf").lower().startswith(b"timecode")
+    except OSError as error:
+        raise unread(path, error) from error
+
+
+def pairs(texts: list[str]) -> dict[str, str]:
+    """Return what `name=value` texts say, by name; raises `EditError` for another text."""
+    found = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise EditError(f"{text[:40]!r} is not a name and a value.", "Write them with = between.")
+        found[name.strip()] = value.strip()
+    return found

@@ -1,0 +1,55 @@
+"""What the lanes show of a session: each function brings all of them up to date with one kind of change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from app.curves.lane import Lane
+from app.curves.peaks import on_screen
+from app.session import Session
+
+
+def take_curves(lanes: Sequence[Lane], session: Session) -> None:
+    """Give each lane its curves, and choose the range of values that they need."""
+    for lane in lanes:
+        lane.take_curves(
+            session.original_curve(lane.key),
+            session.curve(lane.key),
+            session.asked_curve(lane.key),
+            touched=session.touched,
+        )
+        lane.fit()
+
+
+def show_frames(lanes: Sequence[Lane], session: Session) -> None:
+    """Show the frames of the view."""
+    visible = on_screen(len(session.take), session.view)
+    for lane in lanes:
+        lane.show_frames(*session.view)
+        lane.draw_original(visible)
+
+
+def draw_edits(lanes: Sequence[Lane], session: Session) -> None:
+    """Draw what was asked and what the face does, with the draft over it."""
+    visible, draft = on_screen(len(session.take), session.view), session.draft
+    for lane in lanes:
+        drafted = session.draft_curve(lane.key)
+        if draft is None or drafted is None:
+            lane.draw_edit(visible)
+        else:
+            asked = None if lane.curve.is_weight else (draft.asked[:, lane.curve.column], draft.start)
+            lane.draw_edit(visible, (drafted, draft.start), asked)
+
+
+def draw_removed(lanes: Sequence[Lane], session: Session) -> None:
+    """Draw what cleaning takes off, while it is chosen and wanted."""
+    visible, draft = on_screen(len(session.take), session.view), session.draft
+    wanted = session.tool == "clean" and session.shows_removed
+    for lane in lanes:
+        drafted = session.draft_curve(lane.key) if wanted else None
+        if draft is None or drafted is None:
+            lane.hide_removed()
+            continue
+        rows = slice(draft.start, draft.stop)
+        taken_off = session.curve(lane.key)[rows] - drafted
+        lane.draw_removed(taken_off, draft.start, kept=~session.take.lost[rows], visible=visible)
