@@ -8,12 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from app.preview import movie
+from app.printing import remark, say
 from engine.controls import CONTROL_INDEX, measure
 from engine.editing import Patch, edit_control
 from engine.errors import EngineError
 from engine.formats import read_take, write_take
 from engine.performance import demo
 from engine.take import Take
+from engine.words import counted
 
 SPAN_FRAMES = 20
 MOVIE_MARGIN_FRAMES = 20
@@ -54,15 +56,17 @@ def main() -> int:
         edited = patch.apply(take)
         written = write_results(take, edited, frames, path.stem)
     except EngineError as error:
-        print(error, file=sys.stderr)
+        remark(error)
         return 2
     start, stop = frames
     lips = measure(edited.weights)[start:stop, LIPS]
-    print(f"{take.name}: {len(take)} frames at {take.fps:g} fps, {int(take.lost.sum())} lost")
-    print(f"closed the lips over frames {start}:{stop}; they are now at most {lips.max():.2f} mm apart")
-    print(f"{len(take) - (patch.stop - patch.start)} frames outside {patch.start}:{patch.stop} are bit-identical")
+    say(f"{take.name}: {counted(len(take), 'frame')} at {take.fps:g} fps, {int(take.lost.sum())} lost")
+    say(f"closed the lips over frames {start}:{stop}; they are now at most {lips.max():.2f} mm apart")
+    say(
+        f"{counted(len(take) - (patch.stop - patch.start), 'frame')} outside {patch.start}:{patch.stop} are bit-identical"
+    )
     for file in written:
-        print(f"wrote {file}")
+        say(f"wrote {file}")
     return 0
 
 

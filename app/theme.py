@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from engine import assets
+
+if TYPE_CHECKING:
+    from PySide6.QtGui import QPalette
 
 GRID = 8  # px
 ICONS = assets.ICONS.as_posix()
@@ -75,6 +79,36 @@ def palette(name: str) -> Palette:
     return LIGHT if name == "light" else DARK
 
 
+def qt_palette(colours: Palette) -> QPalette:
+    """Return the colours of what no style sheet reaches, such as the bars of a list that drops down."""
+    from PySide6.QtGui import QColor, QPalette
+
+    role, made = QPalette.ColorRole, QPalette()
+    for name, colour in (
+        (role.Window, colours.ground),
+        (role.Base, colours.panel),
+        (role.AlternateBase, colours.raised),
+        (role.Button, colours.raised),
+        (role.ToolTipBase, colours.raised),
+        (role.WindowText, colours.text),
+        (role.Text, colours.text),
+        (role.ButtonText, colours.text),
+        (role.ToolTipText, colours.text),
+        (role.PlaceholderText, colours.quiet),
+        (role.Highlight, colours.accent),
+        (role.HighlightedText, colours.on_accent),
+        (role.Light, colours.edge),
+        (role.Midlight, colours.edge),
+        (role.Mid, colours.edge),
+        (role.Dark, colours.ground),
+        (role.Shadow, colours.ground),
+    ):
+        made.setColor(name, QColor(colour))
+    for name in (role.WindowText, role.Text, role.ButtonText):
+        made.setColor(QPalette.ColorGroup.Disabled, name, QColor(colours.faint))
+    return made
+
+
 def style_sheet(colours: Palette) -> str:
     """Return the Qt style sheet of a theme."""
     c = colours
@@ -115,7 +149,8 @@ QTreeView:focus, QTableView:focus {{ border-color: {c.accent}; }}
 QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
 QComboBox::drop-down {{ border: none; width: 20px; }}
 QComboBox::down-arrow {{ image: url("{ICONS}/down.svg"); width: 10px; height: 6px; }}
-QComboBox QAbstractItemView {{ background: {c.panel}; border: 1px solid {c.edge}; }}
+QComboBox QAbstractItemView {{ background: {c.panel}; border: 1px solid {c.edge}; padding: 0; }}
+QComboBoxPrivateContainer {{ background: {c.panel}; border: none; }}
 QFileDialog QToolButton {{ padding: 2px; }}
 QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
 QHeaderView {{ background: {c.panel}; }}

@@ -19,6 +19,7 @@ from engine.models.resample import interpolate
 from engine.regress import infer
 from engine.regress.network import ALIGNMENT, REACH
 from engine.take import MODEL_FPS, SHAPES, Array, Mask, Take
+from engine.words import counted
 
 Change = Literal["set", "add", "scale"]
 # The smallest change that closes lips is mouthClose over an open jaw, which nobody does.
@@ -72,7 +73,7 @@ class Patch:
         The range is grown over the lost frames beside it, which follow what changed.
         """
         if before.weights.shape != after.weights.shape:
-            raise EditError(f"The new weights have {len(after)} frames, the take {len(before)}.")
+            raise EditError(f"The new weights have {counted(len(after), 'frame')}, the take {len(before)}.")
         first, last = before.with_lost_beside(*frames)
         rows = np.asarray(after.weights[first:last])
         reached = bundled_measurer().measure(rows)
@@ -106,7 +107,7 @@ def parse_frames(text: str, take: Take) -> tuple[int, int]:
             f"{text!r} is not a range of frames.", "Write the first frame and the one after the last: 40:60."
         ) from None
     if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
     return start, stop
 
 
@@ -170,7 +171,9 @@ class Dragger:
         """
         stop = start + len(asked)
         if not (0 <= start < stop <= len(self.take)) or asked.shape[1] != len(CONTROLS):
-            raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(self.take)} frames.")
+            raise EditError(
+                f"Frames {start}:{stop} are not within the take, which has {counted(len(self.take), 'frame')}."
+            )
         if not (np.abs(asked) < FARTHEST_MM**2).all():
             raise EditError("The asked curves must be finite, and within what a face could be asked.")
         feather = round(FEATHER_S * self.take.fps)

@@ -18,6 +18,7 @@ from engine.errors import EditError
 from engine.speech.lane import VisemeLane
 from engine.speech.visemes import NAMES
 from engine.take import Array, Mask, Take, runs
+from engine.words import counted
 
 # What is flagged, and what to call it.
 KINDS: dict[str, str] = {
@@ -104,7 +105,8 @@ def seen_of(
         return Seen(take.weights, measured, take.fps, take.lost, asked, None, visemes)
     if len(original) != len(take):
         raise EditError(
-            f"The original has {len(original)} frames, the take {len(take)}.", "Name the take that was edited."
+            f"The original has {counted(len(original), 'frame')}, the take {len(take)}.",
+            "Name the take that was edited.",
         )
     measure = bundled_measurer().measure
     now, before = controls if controls is not None else (measure(take.weights), measure(original.weights))
@@ -267,4 +269,4 @@ def _met(seen: Seen) -> Indices:
 
 
 def _lasting(frames: int, fps: float) -> str:
-    return "1 frame" if frames == 1 else f"{frames} frames ({frames / fps:.2f} s)"
+    return counted(frames, "frame") + (f" ({frames / fps:.2f} s)" if frames > 1 else "")

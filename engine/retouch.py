@@ -9,6 +9,7 @@ from engine.easing import ease
 from engine.editing import Patch
 from engine.errors import EditError
 from engine.take import SHAPES, Array, Mask, Take
+from engine.words import counted
 
 PASTE_FEATHER_S = 0.13  # beside what is pasted; four frames at 30 fps, as long as a lip takes to open
 LOWEST_HZ = 0.001
@@ -24,7 +25,7 @@ def replace_weight(take: Take, shape: int, start: int, curve: Array) -> Patch:
     """Put a curve, (n,), in place of one weight from frame `start`, kept within the range 0..1 or the recorded one."""
     stop = start + len(curve)
     if not 0 <= start < stop <= len(take) or not 0 <= shape < len(SHAPES):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
     if not np.isfinite(curve).all():
         raise EditError("A weight must be a finite number.")
     weights = take.weights[start:stop].copy()
@@ -70,7 +71,7 @@ def smooth(take: Take, frames: tuple[int, int], cutoff_hz: float, *, feather_s: 
     """
     start, stop = frames
     if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
     if not LOWEST_HZ <= cutoff_hz < take.fps / 2:
         raise EditError(f"The cutoff must be above {LOWEST_HZ:g} and below {take.fps / 2:g} Hz, half the frame rate.")
     if len(take) < 3:

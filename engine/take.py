@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import EditError
+from engine.words import counted
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -93,7 +94,7 @@ class Take:
     def with_weights(self, weights: Array) -> Take:
         """Return the same take with other weights, (frames, 52); lost frames as in `with_rows`."""
         if weights.shape != self.weights.shape:
-            raise EditError(f"The new weights have {weights.shape[0]} frames, the take {len(self)}.")
+            raise EditError(f"The new weights have {counted(weights.shape[0], 'frame')}, the take {len(self)}.")
         return self.with_rows(0, weights)
 
     def with_rows(self, start: int, rows: Array, *, found: Mask | None = None) -> Take:
@@ -164,7 +165,8 @@ def runs(mask: Mask) -> list[tuple[int, int]]:
 
 
 def timecode(time_s: float, fps: float) -> str:
-    """Return `MM:SS:FF` for a time in seconds at a frame rate."""
-    frame = round(time_s * fps)
-    whole = max(1, round(fps))
-    return f"{frame // whole // 60:02d}:{frame // whole % 60:02d}:{frame % whole:02d}"
+    """Return `HH:MM:SS:FF` for a time in seconds at a frame rate; a rate such as 29.97 is counted as 30, none dropped."""
+    frame, whole = round(time_s * fps), max(1, round(fps))
+    seconds, sign = abs(frame) // whole, "-" if frame < 0 else ""
+    digits = max(2, len(str(whole - 1)))
+    return f"{sign}{seconds // 3600:02d}:{seconds // 60 % 60:02d}:{seconds % 60:02d}:{abs(frame) % whole:0{digits}d}"

@@ -19,6 +19,7 @@ from engine.controls import CONTROLS
 from engine.errors import EngineError
 from engine.project.records import FILL
 from engine.take import Array
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.editing import Dragger, Patch
@@ -44,6 +45,7 @@ class EditActions(QObject):
         self._copied: Array | None = None
         self.cutoff_hz: Callable[[], float] = lambda: 6.0
         self.let_go: Callable[[], bool] = lambda: False  # of what is held on the timeline; whether there was any
+        self.put_away: Callable[[], bool] = lambda: False  # the notice that is shown; whether there was any
         self.stop_else: Callable[[], bool] = lambda: False  # stops other work under way; whether there was any
 
     def undo(self) -> None:
@@ -59,7 +61,7 @@ class EditActions(QObject):
             self._session.undo.redo()
 
     def cancel(self) -> None:
-        """Drop the gesture, the fill or the preview under way; with none, clear the selection."""
+        """Drop the gesture, the fill or the preview under way; with none, put a notice away, then clear the selection."""
         tool = self._curves.tool
         if tool.busy:
             tool.cancel()
@@ -67,7 +69,7 @@ class EditActions(QObject):
             self._filling.drop()
         elif self._inference.busy:
             self._inference.cancel()
-        elif not (self.let_go() or self.stop_else()):
+        elif not (self.let_go() or self.stop_else() or self.put_away()):
             self._session.select(None)
 
     def close_here(self) -> None:
@@ -130,7 +132,7 @@ class EditActions(QObject):
         session = self._session
         start, stop = session.selection or (session.playhead, session.playhead + 1)
         self._copied = session.take.weights[start:stop]
-        self.told.emit(f"copied {stop - start} frames")
+        self.told.emit(f"copied {counted(stop - start, 'frame')}")
 
     def paste(self) -> None:
         """Put what was copied in place from the playhead on."""
@@ -144,7 +146,7 @@ class EditActions(QObject):
             return paste(dragger.take, start, copied)
 
         self._inference.run(verb)
-        self._inference.finish(f"paste {len(copied)} frames", kind="paste", inputs={"start": start})
+        self._inference.finish(f"paste {counted(len(copied), 'frame')}", kind="paste", inputs={"start": start})
 
     def preview_smoothing(self, cutoff_hz: float) -> None:
         """Show what a Butterworth filter does to the selection, or the whole take."""

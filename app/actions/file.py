@@ -9,12 +9,14 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
+from app.actions.export_report import export_report
 from app.playback import media
 from app.playback.media import Media
 from app.session import Session
 from app.session.keeper import Keeper
 from app.session.opening import Opened, Opening, Wish
 from app.settings import Settings
+from app.widgets.text import message_box
 from engine.errors import EngineError
 from engine.formats import FORMATS, cues, livelink_folder, write_take
 from engine.formats.importing import Imported
@@ -22,6 +24,7 @@ from engine.formats.livelink_folder import CARD
 from engine.formats.reading import Sides
 from engine.project import ENDING
 from engine.take import Take
+from engine.words import NAME_LENGTH, plain
 
 Answer = QMessageBox.StandardButton
 # What a take is exported as: as it was read, or with left and right of mouth and jaw as the app or by their names.
@@ -47,6 +50,7 @@ class FileActions(QObject):
     """
 
     told = Signal(str, str)  # sentence, advice
+    wrote = Signal(str, str)  # what was written, and what the file cannot hold
     opened = Signal()
     capture_dropped = Signal(object)  # the path of a file of markers
     character_chosen = Signal(object)  # the Path of a head, or None for the bundled one
@@ -59,6 +63,7 @@ class FileActions(QObject):
         self.imported: Imported | None = None  # what the file that was opened last says of itself
         self._newest: Wish | None = None  # of those that were read
         self._reopens = False
+        self._given_up: tuple[object, ...] | None = None  # the edits that go when the file is read
         self.opening.done.connect(self._confirm)
         self.opening.changed.connect(self._keep_again)
         self.opening.failed.connect(self.told)
@@ -66,14 +71,25 @@ class FileActions(QObject):
         keeper.saved.connect(settings.remember)
 
     def load(self, path: Path, *_: object) -> None:
-        """Read a take or a project, and open it when it is read; returns at once.
+        """Read a take or a project, and open it when it is read; returns at once. Unsaved edits are asked about before.
 
         `opened` follows, or `told` where the file cannot be read: what is open then stays as it was.
         """
+        self._given_up = None
         if self._keeper.holds(path):
             self.when_safe(partial(self._reopen, path))
+        elif self._session.edited:
+            self._ask(partial(self.opening.read, path), discard=self._agree)  # before it is read, which may take long
         else:
             self.opening.read(path)
+
+    def _agree(self) -> None:
+        """Remember which edits may be given up once the file that was chosen is read."""
+        self._given_up = self._edits()
+
+    def _edits(self) -> tuple[object, ...]:
+        session = self._session
+        return session.original, session.undo.index(), session.undo.count(), session.marks
 
     def _reopen(self, path: Path) -> None:
         self._keeper.release()
@@ -87,15 +103,21 @@ class FileActions(QObject):
             self._keeper.keep()
 
     def _confirm(self, opened: Opened) -> None:
-        """Ask for unsaved edits, then open what was read."""
+        """Open what was read; ask for unsaved edits where there are any that the user did not give up."""
         self._newest, self._reopens = opened.wish, False
-        self.when_safe(partial(self._open, opened), opened.drop)
+        given_up, self._given_up = self._given_up, None
+        if given_up == self._edits():
+            self._keeper.when_idle(partial(self._open, opened, discard=True))
+        else:
+            self.when_safe(partial(self._open, opened), opened.drop)
 
-    def _open(self, opened: Opened) -> None:
+    def _open(self, opened: Opened, *, discard: bool = False) -> None:
         """Open what was read in place of what is open."""
         if opened.wish is not self._newest or self.opening.path is not None:
             opened.drop()  # while its predecessor was being saved, something else was chosen
             return
+        if discard:
+            self._keeper.forget()
         path, left_over = opened.wish.path, opened.wish.left_over
         self.imported = opened.imported
         if opened.project is not None:
@@ -174,6 +196,7 @@ class FileActions(QObject):
             self.told.emit(error.sentence, error.advice)
             return False
         self._settings.remember(path)
+        self.wrote.emit(*export_report(self._session, path))
         return True
 
     def open_recording(self, take: Take) -> None:
@@ -204,18 +227,24 @@ class FileActions(QObject):
         if not self._keeper.when_idle(partial(self._ask, then, otherwise)):
             self.told.emit(f"{self._session.name} is being saved; then it is closed.", "You may go on working.")
 
-    def _ask(self, then: Callable[[], None], otherwise: Callable[[], None]) -> None:
+    def _ask(
+        self,
+        then: Callable[[], None],
+        otherwise: Callable[[], None] = lambda: None,
+        *,
+        discard: Callable[[], None] | None = None,
+    ) -> None:
         if not self._session.edited:
             then()
             return
         answer = QMessageBox.question(
             self._window,
             "Unsaved edits",
-            f"{self._session.name} has edits that are not saved.",
+            f"{plain(self._session.name, longest=NAME_LENGTH)} has edits that are not saved.",
             Answer.Save | Answer.Discard | Answer.Cancel,
         )
         if answer == Answer.Discard:
-            self._keeper.forget()
+            (discard or self._keeper.forget)()
             then()
         elif answer == Answer.Save and self.save():
             self.when_safe(then, otherwise)
@@ -228,9 +257,7 @@ class FileActions(QObject):
         if not left:
             return
         listed = "\n".join(entry.sentence for entry in left)
-        box = QMessageBox(self._window)
-        box.setWindowTitle("Unsaved work")
-        box.setText(f"Retake ended before this was saved:\n\n{listed}")
+        box = message_box(self._window, "Unsaved work", f"Retake ended before this was saved:\n\n{listed}")
         restore = box.addButton("Restore", QMessageBox.ButtonRole.AcceptRole)
         discard = box.addButton("Discard", QMessageBox.ButtonRole.DestructiveRole)
         box.addButton("Later", QMessageBox.ButtonRole.RejectRole)

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Qt
+from PySide6.QtCore import QObject, QPoint, Qt
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QMainWindow, QMenu, QToolButton
 
-from app.actions.table import ACTIONS, LINES, MENUS, TOOLBAR, keys_of
+from app.actions.table import ACTIONS, CONTEXT, LINES, MENUS, TOOLBAR, all_keys
 from app.settings import PRESETS, Settings
 from app.theme import GRID
 from app.widgets.hints import Hints
+from app.widgets.text import caption, tip
 
 
 class Menus(QObject):
@@ -71,8 +72,9 @@ class Menus(QObject):
         self._settings.preset = name
         for action in self._presets.actions():
             action.setChecked(action.text() == name)
+        shortcuts = all_keys(name, self._settings.keys)
         for entry in ACTIONS:
-            keys = keys_of(entry, name)
+            keys = shortcuts[entry.name]
             self.actions[entry.name].setShortcuts([QKeySequence(key) for key in keys])
             self.actions[entry.name].setToolTip(f"{entry.title}  ({keys[0]})" if keys else entry.title)
 
@@ -86,10 +88,29 @@ class Menus(QObject):
     def _fill_recent(self) -> None:
         self._recent.clear()
         for name in self._settings.recent:
-            entry = self._recent.addAction(Path(name).name)
-            entry.setToolTip(name)
+            entry = self._recent.addAction(caption(Path(name).name))
+            entry.setToolTip(tip(name))
             entry.triggered.connect(partial(self._load, Path(name)))
         self._recent.setEnabled(bool(self._settings.recent))
+
+    def open_context(self, kinds: Sequence[str], at: QPoint, told: str = "") -> QMenu:
+        """Offer what can be done with what lies at a point of the screen, kinds of `CONTEXT`, and say what it is."""
+        menu = QMenu(self._window)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        if told:
+            menu.addAction(caption(told)).setEnabled(False)
+            menu.addSeparator()
+        listed: set[str] = set()
+        for kind in kinds:
+            for name in CONTEXT[kind]:
+                if not name:
+                    menu.addSeparator()
+                elif name not in listed:
+                    menu.addAction(self.actions[name])
+                    listed.add(name)
+            menu.addSeparator()
+        menu.popup(at)
+        return menu
 
     def toolbar(self) -> QFrame:
         """Return the toolbar."""

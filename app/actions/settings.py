@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QWidget
 
 from app import theme
 from app.actions.menus import Menus
-from app.actions.table import ACTIONS, MENUS, keys_of
-from app.dialogs.page import Page, in_columns
+from app.actions.table import ACTIONS, MENUS, MOUSE, all_keys
+from app.dialogs.keys import KeyRow, KeysDialog
+from app.dialogs.page import Page, in_columns, in_lines
 from app.dialogs.settings import SettingsDialog
 from app.playback.media import Media
 from app.settings import Settings
@@ -39,8 +42,16 @@ class SettingsActions(QObject):
         if self._dialog is None:
             self._dialog = SettingsDialog(self._settings, self._media, self._window)
             self._dialog.changed.connect(self.apply)
+            self._dialog.edit_keys.connect(self.edit_keys)
         self._dialog.show()
         self._dialog.raise_()
+
+    def edit_keys(self) -> None:
+        """Show the keys of every action, to be changed."""
+        rows = [KeyRow(entry.name, entry.title.rstrip("…"), entry.menu) for entry in ACTIONS]
+        dialog = KeysDialog(rows, lambda own: all_keys(self._settings.preset, own), self._settings, self._window)
+        dialog.changed.connect(partial(self.apply, "keys"))
+        dialog.show()
 
     def light_theme(self) -> None:
         """Switch between dark and light."""
@@ -49,15 +60,17 @@ class SettingsActions(QObject):
 
     def show_keys(self) -> None:
         """List every key."""
+        keys = all_keys(self._settings.preset, self._settings.keys)
         groups = {
             menu: [
-                (entry.title.rstrip("…"), ", ".join(keys))
+                (entry.title.rstrip("…"), ", ".join(keys[entry.name]))
                 for entry in ACTIONS
-                if entry.menu == menu and (keys := keys_of(entry, self._settings.preset))
+                if entry.menu == menu and keys[entry.name]
             ]
             for menu in MENUS
         }
         groups["View"].append(("See the original", "hold B"))
+        groups["Mouse"] = list(MOUSE)
         Page("Keys", in_columns(groups), self._window).show()
 
     def about(self) -> None:
@@ -65,7 +78,7 @@ class SettingsActions(QObject):
         from app.dialogs.about import describe
 
         name, *rest = describe().split("\n")
-        Page("About Retake", "<br>".join([f"<b>{name}</b>", *rest]), self._window).show()
+        Page("About Retake", in_lines(name, rest), self._window).show()
 
     def apply_all(self) -> None:
         """Let every setting take effect."""
@@ -81,7 +94,7 @@ class SettingsActions(QObject):
             self.themed.emit(colours)
         elif name == "count":
             self.counted.emit(settings.count == "frames")
-        elif name == "preset":
+        elif name in ("preset", "keys"):
             self._menus.use_preset(settings.preset)
         elif name == "speaker":
             self._media.use_device(settings.speaker)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.settings import PRESETS
@@ -62,12 +63,17 @@ ACTIONS: tuple[Action, ...] = (
     Action("restore_visemes", "Visemes as attached", "Edit", twin="the file of visemes is never changed"),
     Action("remove_visemes", "Remove the visemes", "Edit", twin="retake fill without --visemes"),
     Action("note", "Note on this frame", "Edit", ("N",), twin="a note belongs to a project"),
+    Action("edit_note", "Edit the note here", "Edit", ("Shift+N",), twin="a note belongs to a project"),
+    Action("delete_note", "Delete the note here", "Edit", twin="a note belongs to a project"),
     Action("show_settings", "Settings…", "Edit", ("Ctrl+,",), twin="each command has its own options"),
+    Action("edit_keys", "Keys…", "Edit", twin="each command has its own options"),
     Action("drag_tool", "Drag", "Tools", ("V",), "Drag", True, twin="retake edit"),
     Action("draw_tool", "Draw", "Tools", ("D",), "Draw", True, twin="retake edit --set"),
     Action("scale_tool", "Scale", "Tools", ("S",), "Scale", True, twin="retake edit --scale"),
-    Action("pin_tool", "Pin", "Tools", ("K",), "Pin", True, twin="retake pin"),
+    Action("pin_tool", "Pin", "Tools", ("P",), "Pin", True, twin="retake pin"),
+    Action("remove_pin", "Remove the pin here", "Tools", twin="the pose stays; a new command writes a new file"),
     Action("mark_tool", "Mark", "Tools", ("M",), "Mark", True, twin="retake fill --frames A:B"),
+    Action("unmark_span", "Unmark the span", "Tools", ("Shift+M",), twin="the frames stay as they are"),
     Action("fill", "Fill the span", "Tools", ("F",), "Fill", twin="retake fill"),
     Action("accept", "Keep the fill", "Tools", ("Return", "Enter"), twin="retake fill --seed"),
     Action("clean_tool", "Clean", "Tools", ("C",), "Clean", True, twin="retake clean"),
@@ -103,7 +109,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("send_back", "Needs work", "Review", ("Ctrl+Shift+W",), twin="a verdict belongs to a project"),
     Action("write_report", "Write a report…", "Review", ("Ctrl+Shift+E",), twin="retake review -o REPORT.html"),
     Action("expand_lane", "Show or hide the weights below", "View", ("W",)),
-    Action("play", "Play or pause", "Playback", ("Space",), "▶", True, twin="retake render -o OUT.mp4"),
+    Action("play", "Play or pause", "Playback", ("Space", "K"), "▶", True, twin="retake render -o OUT.mp4"),
     Action("play_backwards", "Play backwards", "Playback", ("J",)),
     Action("stop", "Stop", "Playback", ("Shift+K",)),
     Action("play_forwards", "Play forwards", "Playback", ("L",)),
@@ -122,6 +128,11 @@ ACTIONS: tuple[Action, ...] = (
     Action("set_in", "Selection begins here", "Playback", ("I",), twin="--frames A:B"),
     Action("set_out", "Selection ends here", "Playback", ("O",), twin="--frames A:B"),
     Action("clear_selection", "Clear selection", "Playback", ("Ctrl+D",), twin="--frames A:B"),
+    Action("view_before", "See the face as recorded", "View", checkable=True, twin="retake render"),
+    Action("view_after", "See the face as edited", "View", checkable=True, twin="retake render"),
+    Action("view_split", "See both side by side", "View", checkable=True, twin="retake render --compare"),
+    Action("view_difference", "See where they differ", "View", checkable=True),
+    Action("frame_head", "Look at the whole head from the front", "View"),
     Action("frame_all", "Show the whole take", "View", ("Home",)),
     Action("zoom_in", "Zoom in", "View", ("Ctrl+=", "=")),
     Action("zoom_out", "Zoom out", "View", ("Ctrl+-", "-")),
@@ -154,6 +165,7 @@ LINES = frozenset(
         "next_frame",
         "next_span",
         "set_in",
+        "view_before",
         "frame_all",
         "next_lane",
         "light_theme",
@@ -170,6 +182,69 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
 MENUS: tuple[str, ...] = ("File", "Edit", "Tools", "Retarget", "Review", "Playback", "View", "Help")
 
 
+# What a right click, or the menu key, offers on each kind of thing; an empty name is a line between two groups.
+CONTEXT: dict[str, tuple[str, ...]] = {
+    "face": (
+        *("view_after", "view_before", "view_split", "view_difference", "", "frame_head", "load_character", ""),
+        *("pin_tool", "note", "", "play"),
+    ),
+    "curve": (
+        *("close_here", "copy", "paste", "smooth", "", "hit_exactly", "rest_follows", "again", ""),
+        *("set_in", "set_out", "clear_selection", "", "fill", "note", "", "expand_lane", "frame_all"),
+    ),
+    "lane": ("expand_lane", "close_here", "", "hit_exactly", "rest_follows", "", "previous_lane", "next_lane"),
+    "span": ("fill", "smooth", "unmark_span", "", "copy", "clear_selection", "", "note", "loop"),
+    "flag": ("previous_span", "next_span", "", "note", "pin_tool", "smooth", "mark_tool"),
+    "note": ("edit_note", "delete_note", "", "note"),
+    "pin": ("pin_tool", "remove_pin", "", "note"),
+    "label": ("label_frame", "unlabel_frame", "", "go_to_loosest", "suggest_labels", "", "save_labels", "read_labels"),
+    "time": (
+        "play",
+        "loop",
+        "",
+        "set_in",
+        "set_out",
+        "clear_selection",
+        "",
+        "note",
+        "",
+        "zoom_in",
+        "zoom_out",
+        "frame_all",
+    ),
+    "audio": ("mute", "sound_earlier", "sound_later", "", "attach_audio", "detach_audio"),
+}
+
+
+# What the mouse does beyond the buttons, for the list of keys.
+MOUSE: tuple[tuple[str, str], ...] = (
+    ("Bend a curve", "drag it"),
+    ("Wider or narrower brush", "wheel while dragging, or Alt+wheel"),
+    ("Fine steps", "Shift while dragging"),
+    ("Scroll the lanes", "wheel"),
+    ("Zoom in time", "Ctrl+wheel; on the ruler: wheel"),
+    ("Move along the take", "Shift+wheel, or drag with the middle button"),
+    ("Go to a frame", "click or drag the ruler"),
+    ("Select frames", "Shift+drag on the ruler"),
+    ("Mark a span", "drag in the spans lane"),
+    ("Move the sound", "drag the waveform"),
+    ("Show the weights below", "click a curve's name"),
+    ("Turn, move, zoom the face", "drag, right-drag, wheel"),
+    ("Whole head from the front", "double-click the face"),
+    ("What can be done here", "right-click, or the menu key"),
+)
+
+
 def keys_of(entry: Action, preset: str) -> tuple[str, ...]:
     """Return an action's shortcuts under a preset."""
     return PRESETS.get(preset, {}).get(entry.name, entry.keys)
+
+
+def all_keys(preset: str, own: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+    """Return every action's shortcuts: the user's own, and of the preset's those that the user gave to no other action."""
+    names = {entry.name for entry in ACTIONS}
+    given = {key.lower() for name, keys in own.items() if name in names for key in keys}
+    return {
+        entry.name: own.get(entry.name, tuple(key for key in keys_of(entry, preset) if key.lower() not in given))
+        for entry in ACTIONS
+    }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 
 from app.playback.transport import Transport
 from app.session import Session
@@ -18,6 +18,8 @@ class TimeActions(QObject):
     ----------
     session, transport, filling : what they work on; while a fill is chosen, the arrows go through its variants
     """
+
+    told = Signal(str)  # what is wrong where one went
 
     def __init__(self, session: Session, transport: Transport, filling: Filling) -> None:
         super().__init__()
@@ -92,6 +94,8 @@ class TimeActions(QObject):
         elif within is not None and not within[0] <= frame < within[1]:
             self._session.select(None)  # else playing from the flag would leap back into the selection
         self._session.move_playhead(frame)
+        found = [flag for flag in self._session.flags or () if flag.start == frame]
+        self.told.emit(max(found, key=lambda flag: flag.weight).sentence if found else "")
 
     def set_in(self) -> None:
         """Let the selection begin at the playhead."""

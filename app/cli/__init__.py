@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import logging
-import sys
-from typing import Annotated
+from typing import Annotated, cast
 
 import typer
 
 from app.cli import blind, character, clean, fill, flags, review, smooth, spacetime, tables, takes, training
+from app.printing import remark, say
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 
+UsageError = cast("type[typer.BadParameter]", typer.BadParameter.__mro__[1])  # of whichever click typer brings
 FAMILIES = (takes, flags, review, fill, smooth, spacetime, clean, character, tables, blind, training)
 
 
@@ -34,7 +35,7 @@ def _tell_version(wanted: bool) -> None:
     if wanted:
         from app.dialogs.about import describe
 
-        print(describe())
+        say(describe())
         raise typer.Exit
 
 
@@ -54,17 +55,20 @@ def names() -> set[str]:
 def run(arguments: list[str]) -> int:
     """Run one command; returns its exit code, 2 with one sentence on the error stream for what the user can mend."""
     try:
-        build()(args=arguments, prog_name="retake")
+        code = build()(args=arguments, prog_name="retake", standalone_mode=False)
+        return code if isinstance(code, int) else 0
+    except UsageError as error:  # typer would print the words of the command line as they are
+        remark(f"{error.format_message()} Help is given by: retake COMMAND --help")
+        return 2
     except EngineError as error:
-        print(error, file=sys.stderr)
+        remark(error)
         return 2
     except KeyboardInterrupt:
         return 130
     except Exception as error:  # no traceback ever reaches the user; the log gets it
         start_log()
         logging.getLogger("app").exception("uncaught")
-        print(f"Something went wrong: {error or type(error).__name__}. {log_path()} has more.", file=sys.stderr)
+        remark(f"Something went wrong: {error or type(error).__name__}. {log_path()} has more.")
         return 1
     except SystemExit as done:
         return done.code if isinstance(done.code, int) else 1
-    return 0

@@ -7,6 +7,9 @@ from typing import Annotated
 
 import typer
 
+from app.printing import say
+from engine.words import counted
+
 
 def make(
     out: Annotated[Path, typer.Option("-o", "--out", help="The folder for the movies.", show_default=False)],
@@ -28,7 +31,7 @@ def make(
         movie.write_movie([one.take], out / f"{one.name}.mp4", height=size)
     write_bytes(out / "answers.csv", ["".join(["movie,answer\n", *(f"{one.name},\n" for one in sheet)]).encode()])
     write_bytes(key, [key_of(sheet).encode()])
-    typer.echo(f"wrote {len(sheet)} movies and answers.csv to {out}; the key is {key}")
+    say(f"wrote {counted(len(sheet), 'movie')} and answers.csv to {out}; the key is {key}")
 
 
 def score(
@@ -39,7 +42,7 @@ def score(
     from engine.evaluate.blind import score as scored
 
     for name, value in scored(answers, key).items():
-        typer.echo(f"{name}: {value:g}")
+        say(f"{name}: {value:g}")
 
 
 def register(app: typer.Typer) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,7 +10,10 @@ import typer
 
 from app.cli.performance import MARKER_HELP, pairs, performance_of
 from app.cli.reading import AUTOMATIC, Fps, ReadSides
+from app.printing import as_json as print_json
+from app.printing import say
 from engine.errors import EditError
+from engine.words import counted
 
 if TYPE_CHECKING:
     from app.cli.performance import Carried
@@ -47,7 +49,7 @@ def import_(
     made = imported(path, unit=unit, up=up, facing=facing, names=names or [], landmarks=landmarks or [])
     save(made.character, out)
     if as_json:
-        print(json.dumps(_summary(made)))
+        print_json(_summary(made))
         return
     rows = [
         {"in the file": row.source, "shape": row.shape if row.sure else "", "how": row.how, "likeness": row.likeness}
@@ -55,8 +57,8 @@ def import_(
     ]
     show(path.name, rows, as_json=False)
     for notice in made.notices:
-        print(notice)
-    print(f"Imported {len(made.character.neutral)} vertices. Written to {out}.")
+        say(notice)
+    say(f"Imported {counted(len(made.character.neutral), 'vertex', 'vertices')}. Written to {out}.")
 
 
 def landmarks_(
@@ -169,7 +171,8 @@ def drive(
     posed = (head.as_in_file(frame.astype(np.float32)) for frame in driver.frames(aimed))
     moving = MovingMesh(head.as_in_file(rest), head.triangles_in_file, np.stack(list(posed)), source.take.fps)
     write(moving, out)
-    print(f"Moved {len(moving.rest)} vertices by {len(shared)} points over {len(aimed)} frames. Written to {out}.")
+    moved = f"{counted(len(moving.rest), 'vertex', 'vertices')} by {counted(len(shared), 'point')}"
+    say(f"Moved {moved} over {counted(len(aimed), 'frame')}. Written to {out}.")
 
 
 def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None) -> Character:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import signal
 import tempfile
 import threading
@@ -13,11 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
+from app.printing import as_json as print_json
+from app.printing import remark, say
 from engine.errors import EngineError
 from engine.formats import format_of, write_take
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from engine.live.spool import Spool
     from engine.take import Take
 
-console = Console()
-errors = Console(stderr=True)
 _TOLD_EVERY_S = 1.0
 
 
@@ -50,10 +49,10 @@ def clean(
     start, stop = cleaned.touched
     removed = float(abs(cleaned.removed).max())
     if as_json:
-        print(json.dumps({"out": str(out), "frames": [start, stop], "removed": removed, "lag_ms": cleaned.lag_ms}))
+        print_json({"out": str(out), "frames": [start, stop], "removed": removed, "lag_ms": cleaned.lag_ms})
     else:
-        console.print(f"cleaned frames {start}:{stop} of {recorded.name}, at most {removed:.3f} of a weight removed")
-        console.print(f"wrote {out}", highlight=False)
+        say(f"cleaned frames {start}:{stop} of {recorded.name}, at most {removed:.3f} of a weight removed")
+        say(f"wrote {out}")
 
 
 def live(
@@ -80,12 +79,12 @@ def live(
     stream = Stream(subject=subject, strength=strength, on_arrival=recorder.add if record else None)
     with Listener(stream, bind=bind, port=port) as listener:
         spool = None if record is None else Spool(recorder, record)
-        errors.print(f"listening on {listener.address[0]}:{listener.address[1]}", style="dim", highlight=False)
+        remark(f"listening on {listener.address[0]}:{listener.address[1]}")
         with _ended_by_signals():
             try:
                 _tell(listener, seconds, spool, as_json=as_json)
             except (KeyboardInterrupt, BrokenPipeError):
-                errors.print("stopped", style="dim")
+                remark("stopped")
     if record is not None and spool is not None:
         _write_recording(recorder, spool, record)
 
@@ -102,7 +101,7 @@ def _write_recording(recorder: Recorder, spool: Spool, record: Path) -> None:
         elsewhere = spool.path if _saved(spool) else _written_elsewhere(taken, record)
         raise EngineError(f"{error.sentence} The recording is in {elsewhere}.", error.advice) from error
     spool.close(remove=True)
-    errors.print(f"wrote {record}: {len(taken)} frames, {int(taken.lost.sum())} of them lost", highlight=False)
+    remark(f"wrote {record}: {counted(len(taken), 'frame')}, {int(taken.lost.sum())} of them lost")
 
 
 def _saved(spool: Spool) -> bool:
@@ -149,17 +148,17 @@ def _tell(listener: Listener, seconds: float | None, spool: Spool | None, *, as_
             try:
                 spool.save()
             except EngineError as error:
-                errors.print(f"{error} The recording goes on in memory.", highlight=False)
+                remark(f"{error} The recording goes on in memory.")
         status = listener.status()
         listener.frames()
         latency = None if status.latency_p95_ms != status.latency_p95_ms else round(status.latency_p95_ms, 3)
         if as_json:
             told = {"subjects": status.subjects, "frames": status.frames, "drops": status.drops}
-            print(json.dumps({**told, "latency_p95_ms": latency}), flush=True)
+            print_json({**told, "latency_p95_ms": latency})
         else:
             drops = ", ".join(f"{count} {reason}" for reason, count in status.drops.items()) or "none dropped"
             late = "" if latency is None else f", p95 {latency} ms"
-            console.print(f"{status.frames} frames, {drops}{late}", highlight=False)
+            say(f"{counted(status.frames, 'frame')}, {drops}{late}")
 
 
 def replay(
@@ -180,7 +179,7 @@ def replay(
 
     network = Network(loss, reorder, jitter_ms / 1e3)
     sent = send(open_take(take, fps, sides), _address(to), network, repeat=repeat, subject=subject)
-    console.print(f"sent {sent} packets to {to}", highlight=False)
+    say(f"sent {counted(sent, 'packet')} to {to}")
 
 
 def _address(text: str) -> tuple[str, int]:

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
+from app.printing import say
 from engine.errors import EditError, FormatError
 from engine.formats import format_of, read_take
 from engine.formats.textfile import read_text
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.pose import Pose
@@ -80,12 +82,12 @@ def fill(
     for index, one in enumerate(filled):
         path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
         save_take(one, path, write_sides)
-        typer.echo(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
+        say(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
 
 
 def _said(spans: list[tuple[int, int]]) -> str:
     if len(spans) > 4:
-        return f"{len(spans)} spans, {sum(stop - start for start, stop in spans)} frames"
+        return f"{counted(len(spans), 'span')}, {counted(sum(stop - start for start, stop in spans), 'frame')}"
     return "frames " + ", ".join(f"{start}:{stop}" for start, stop in spans)
 
 
@@ -103,7 +105,7 @@ def _pin(text: str) -> tuple[int, Pose]:
     other = read_take(Path(name))
     index = int(which)
     if index >= len(other):
-        raise EditError(f"{other.name} has no frame {index}: it has {len(other)} frames.")
+        raise EditError(f"{other.name} has no frame {index}: it has {counted(len(other), 'frame')}.")
     return int(frame), other.weights[index]
 
 

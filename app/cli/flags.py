@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.reading import AUTOMATIC, Fps, ReadSides, open_take, sides_of
+from app.printing import say
 from engine.take import timecode
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.formats.reading import Reading
@@ -49,10 +51,10 @@ def flags(
         time = timecode(flag.start / seen.fps, seen.fps)
         table.writerow((flag.start, flag.stop, time, flag.kind, f"{flag.weight:.2f}", flag.sentence))
     if out is None:
-        typer.echo(text.getvalue(), nl=False)
+        say(text.getvalue(), end="")
     else:
         write_bytes(out, [text.getvalue().encode()])
-        typer.echo(f"{len(found)} flags; wrote {out}")
+        say(f"{counted(len(found), 'flag')}; wrote {out}")
 
 
 def _lane(path: Path | None, offset_s: float) -> VisemeLane | None:

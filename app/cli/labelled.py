@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.errors import EditError
+from engine.words import counted
 
 if TYPE_CHECKING:
     from app.cli.performance import Carried
@@ -27,7 +28,7 @@ def suggest(performance: Source, count: int, labels: Path | None) -> list[int]:
         raise EditError("Ask for one suggested frame or more.")
     known = list(_read(labels).labels) if labels is not None else []
     if known and max(known) >= len(performance):
-        raise EditError(f"Frame {max(known)} has a label; the source has {len(performance)} frames.")
+        raise EditError(f"Frame {max(known)} has a label; the source has {counted(len(performance), 'frame')}.")
     return suggest_frames(_features(performance), count, labelled=known)
 
 

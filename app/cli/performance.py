@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from app.cli.reading import open_take
 from engine.errors import EditError
 from engine.formats.content import require_file, unread
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.character import Character
@@ -87,7 +88,7 @@ def performance_of(
         return Carried(from_take(open_take(path, fps, sides), bundled()))
     capture = markers.read(path, unit=unit, fps=fps)
     if not 0 <= neutral < len(capture):
-        raise EditError(f"Frame {neutral} is not within the capture, which has {len(capture)} frames.")
+        raise EditError(f"Frame {neutral} is not within the capture, which has {counted(len(capture), 'frame')}.")
     if placed:
         return Carried(from_markers(capture, neutral_frame=neutral))
     table = match_markers(capture.positions[neutral], capture.names).corrected(changes or {})

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 
 from app.cli.reading import AUTOMATIC, Fps, ReadSides, sides_of
+from app.printing import as_json as print_json
+from app.printing import remark, say
 from engine.errors import EditError, EngineError
 from engine.quality import KINDS
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.formats.reading import Reading
@@ -24,7 +25,6 @@ PICTURE_HEIGHT = 240  # px
 PICTURES = 60  # at most, of the changes that move the face furthest
 INDEX = "index.html"
 FOUND = 1  # exit code of a take that has what it must not have
-errors = Console(stderr=True)
 
 
 def review(
@@ -57,9 +57,9 @@ def review(
     if out is not None:
         _write(found, out, pictures=pictures)
     if as_json:
-        print(json.dumps(_as_json(found)))
+        print_json(_as_json(found))
     else:
-        typer.echo(f"{_summary(found)}; wrote {out}")
+        say(f"{_summary(found)}; wrote {out}")
 
 
 def check(
@@ -88,10 +88,10 @@ def check(
             unread += 1
             rows.append({"take": str(path), "ok": False, "error": str(error), "flags": []})
     if as_json:
-        print(json.dumps({"ok": all(row["ok"] for row in rows), "takes": rows}))
+        print_json({"ok": all(row["ok"] for row in rows), "takes": rows})
     else:
         for row in rows:
-            typer.echo(f"{row['take']}: {row.get('error') or _counted(row['flags'])}")
+            say(f"{row['take']}: {row.get('error') or _counted(row['flags'])}")
     if not all(row["ok"] for row in rows):
         raise SystemExit(2 if unread else FOUND)
 
@@ -116,7 +116,7 @@ def _review_queue(folder: Path, out: Path | None, reading: Reading, *, pictures:
     out.mkdir(parents=True, exist_ok=True)
     entries = []
     for number, (before, after) in enumerate(found, 1):
-        errors.print(f"{number} of {len(found)}: {after.name}", style="dim", highlight=False, markup=False)
+        remark(f"{number} of {len(found)}: {after.name}")
         target = out / f"{after.stem}.html"
         try:
             seen = pairs.review(before, after, reading=reading)
@@ -125,7 +125,9 @@ def _review_queue(folder: Path, out: Path | None, reading: Reading, *, pictures:
         except EngineError as error:
             entries.append(Entry(after.name, "", str(error)))
     write_bytes(out / INDEX, [index(entries).encode()])
-    typer.echo(f"{len(found)} pairs, {sum(not entry.link for entry in entries)} of them unread; wrote {out / INDEX}")
+    say(
+        f"{counted(len(found), 'pair')}, {sum(not entry.link for entry in entries)} of them unread; wrote {out / INDEX}"
+    )
 
 
 def _write(found: Review, out: Path, *, pictures: bool) -> None:
@@ -155,9 +157,10 @@ def _drawing(compared: Comparison) -> tuple[Draw, float]:
 
 def _summary(found: Review) -> str:
     compared = found.comparison
+    changes, frames = counted(len(compared.changes), "change"), counted(int(compared.common.sum()), "frame")
     return (
-        f"{len(compared.changes)} changes in {int(compared.differs.sum())} of {int(compared.common.sum())} frames, "
-        f"{len(found.new_flags)} new flags, {len(found.gone_flags)} gone ({compared.alignment.sentence})"
+        f"{changes} in {int(compared.differs.sum()):,} of {frames}, {counted(len(found.new_flags), 'new flag')}, "
+        f"{len(found.gone_flags)} gone ({compared.alignment.sentence})"
     )
 
 

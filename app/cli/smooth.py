@@ -9,6 +9,7 @@ import typer
 
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from app.cli.takes import Out, TakeFile
+from app.printing import say
 
 
 def smooth(
@@ -27,7 +28,7 @@ def smooth(
     opened = open_take(Path(take), fps, sides)
     chosen = parse_frames(frames, opened) if frames else (0, len(opened))
     save_take(retouch.smooth(opened, chosen, cutoff).apply(opened), out, write_sides)
-    typer.echo(f"smoothed frames {chosen[0]}:{chosen[1]} at {cutoff:g} Hz; wrote {out}")
+    say(f"smoothed frames {chosen[0]}:{chosen[1]} at {cutoff:g} Hz; wrote {out}")
 
 
 def register(app: typer.Typer) -> None:

@@ -11,7 +11,9 @@ import typer
 from app.cli import labelled
 from app.cli.performance import MARKER_HELP, Carried, pairs, performance_of
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
+from app.printing import say
 from engine.errors import EditError
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.character import Character
@@ -66,7 +68,7 @@ def pin(
     )
     edited = pins.pin(source, {frame: named}, parse_frames(frames, source), whole=not free, spreading=spreading)
     save_take(edited, out, write_sides)
-    print(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
+    say(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
 
 
 def retarget(
@@ -111,7 +113,7 @@ def retarget(
         placed=landmarks is not None,
     )
     if suggest is not None:
-        print(*labelled.suggest(performance.source, suggest, labels), sep="\n")
+        say("\n".join(map(str, labelled.suggest(performance.source, suggest, labels))))
         return
     assert out is not None
     performance.show()
@@ -122,8 +124,8 @@ def retarget(
         made, target = _carried(performance, character, landmarks, matching)
     save_take(made, out, write_sides)
     for notice in made.notices:
-        print(notice)
-    print(f"Moved {target.name} by {len(made)} frames of {source.name}. Written to {out}.")
+        say(notice)
+    say(f"Moved {target.name} by {counted(len(made), 'frame')} of {source.name}. Written to {out}.")
 
 
 def _matching(*, alpha: float | None, beta: float | None, closure: float | None, unbounded: bool) -> Matching:

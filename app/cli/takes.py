@@ -10,8 +10,10 @@ import typer
 
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from app.cli.tables import show
+from app.printing import say
 from engine.errors import EditError
 from engine.take import runs, timecode
+from engine.words import counted
 
 TakeFile = Annotated[
     Path, typer.Argument(help="A take: a Live Link Face CSV, folder or zip, or a project.", show_default=False)
@@ -39,17 +41,19 @@ def info(
     ]
     rows += [{"name": "lost", "unit": "frames", "lowest": float(a), "highest": float(b)} for a, b in runs(opened.lost)]
     if not as_json:
-        typer.echo(
-            f"{opened.name}: {len(opened):,} frames at {opened.fps:g} fps, {timecode(opened.duration_s, opened.fps)}"
+        say(
+            f"{opened.name}: {counted(len(opened), 'frame')} at {opened.fps:g} fps, {timecode(opened.duration_s, opened.fps)}"
         )
-        typer.echo(f"{int(opened.lost.sum()):,} frames lost; head {'recorded' if opened.has_head else 'not recorded'}")
+        say(
+            f"{counted(int(opened.lost.sum()), 'frame')} lost; head {'recorded' if opened.has_head else 'not recorded'}"
+        )
         if (origin := imported(opened)) is not None:
             swapped = livelink.read_as(opened).swapped
             why = origin.rate_reason(opened.fps, Reading(fps))
-            typer.echo(f"rate: {why}; sides: {in_words(swapped)} ({origin.sides_reason(swapped=swapped)})")
+            say(f"rate: {why}; sides: {in_words(swapped)} ({origin.sides_reason(swapped=swapped)})")
         for notice in opened.notices:
-            typer.echo(notice)
-    show(f"{opened.name}, {len(opened)} frames, {opened.fps:g} fps", rows, as_json=as_json)
+            say(notice)
+    show(f"{opened.name}, {counted(len(opened), 'frame')}, {opened.fps:g} fps", rows, as_json=as_json)
 
 
 def edit(
@@ -83,11 +87,11 @@ def edit(
     save_take(patch.apply(opened), out, write_sides)
     measured = bundled_measurer().measure(opened.weights[patch.start : patch.stop])
     reached = patch.reached[start - patch.start : stop - patch.start, column]
-    typer.echo(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} mm")
+    say(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} mm")
     asked = np.where(patch.asked != measured, patch.asked, np.nan)
     for short in shortfalls(patch.weights, asked, bundled_measurer(), exact_curve=exact):
-        typer.echo(f"frame {patch.start + short.row}: {short}")
-    typer.echo(f"frames outside {patch.start}:{patch.stop} are as they were; wrote {out}")
+        say(f"frame {patch.start + short.row}: {short}")
+    say(f"frames outside {patch.start}:{patch.stop} are as they were; wrote {out}")
 
 
 def render(
@@ -97,6 +101,9 @@ def render(
     compare: Annotated[Path | None, typer.Option(help="Another take to draw at its right.")] = None,
     character: Annotated[Path | None, typer.Option(help="A head to draw it on; the bundled one without.")] = None,
     size: Annotated[int, typer.Option(help="Height in pixels.", min=64, max=4096)] = 720,
+    codec: Annotated[
+        str | None, typer.Option(help="Of a movie: av1, vp9, mpeg4, or h264 for players that know nothing else.")
+    ] = None,
     fps: Fps = None,
     sides: ReadSides = AUTOMATIC,
 ) -> None:
@@ -105,7 +112,7 @@ def render(
 
     shown = [open_take(path, fps, sides) for path in (take, compare) if path is not None]
     if frame is not None and not all(0 <= frame < len(each) for each in shown):
-        raise EditError(f"Frame {frame} is not within the take, which has {min(map(len, shown))} frames.")
+        raise EditError(f"Frame {frame} is not within the take, which has {counted(min(map(len, shown)), 'frame')}.")
     if character is not None:
         from engine.formats.characters.opening import character_of
 
@@ -113,10 +120,10 @@ def render(
     if out.suffix.lower() == ".png":
         movie.write_picture(shown, frame or 0, out, height=size)
     elif out.suffix.lower() == ".mp4":
-        movie.write_movie(shown, out, height=size)
+        movie.write_movie(shown, out, height=size, codec=codec)
     else:
         raise EditError(f"{out.name} is neither a picture nor a movie.", "Use a name that ends in .png or .mp4.")
-    typer.echo(f"wrote {out}")
+    say(f"wrote {out}")
 
 
 def register(app: typer.Typer) -> None:

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
+from app.printing import say
 from engine.errors import EngineError
 
 NETWORKS = ("regress", "regress_baselines", "regress_study", "clean", "expected", "inpaint", "motion", "controls")
@@ -34,9 +34,8 @@ def train(
 
     if name not in NETWORKS:
         raise EngineError(f"There is no network called {name!r}.", f"Networks are: {', '.join(NETWORKS)}.")
-    console = Console()
     trainer = importlib.import_module(ELSEWHERE.get(name, f"engine.{name}.train"))
-    trainer.train(data or data_folder(), out or MODELS, report=lambda line: console.print(line, highlight=False))
+    trainer.train(data or data_folder(), out or MODELS, report=say)
 
 
 def build(name: Annotated[str, typer.Argument(help=f"Which asset: {', '.join(ASSETS)}.")]) -> None:

@@ -42,7 +42,7 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         font.setBold(self.active)
         painter.setFont(font)
         painter.setPen(self.colour)
-        name_box = QRectF(area.left(), middle - 17, area.width() - (0 if self._curve.is_weight else 30), 17)
+        name_box = QRectF(area.left(), middle - 17, area.width() - (0 if self._curve.is_weight else 38), 17)
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
         mark = "" if self._curve.is_weight else "▾ " if self.expanded else "▸ "
         indent = INDENT_PX if self._curve.is_weight else 0
@@ -71,11 +71,11 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
             painter.setPen(self.quiet)
             area.setHeight(area.height() * (1 - self.spare))
         if area.height() > 26 and not self._curve.is_weight:
-            top, bottom = f"{high:.0f}", f"{low:.0f}"
+            top, bottom, unit = f"{high:.0f}", f"{low:.0f}", f" {self._curve.unit}"
             if top == bottom:
-                painter.drawText(area, right | Qt.AlignmentFlag.AlignVCenter, top)
+                painter.drawText(area, right | Qt.AlignmentFlag.AlignVCenter, top + unit)
                 return
-            painter.drawText(area, right | Qt.AlignmentFlag.AlignTop, top)
+            painter.drawText(area, right | Qt.AlignmentFlag.AlignTop, top + unit)
             painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, bottom)
 
 

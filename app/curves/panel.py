@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSizeF, Qt
-from PySide6.QtGui import QFocusEvent, QMouseEvent, QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QLabel
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSizeF, Qt, Signal
+from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QMouseEvent, QResizeEvent, QWheelEvent
 
 from app.curves.drawing import draw_edits, draw_removed, show_frames, take_curves
 from app.curves.lane import Lane
@@ -19,6 +18,7 @@ from app.curves.tools.base import Tool
 from app.session import Change, Session
 from app.session.inference import Inference
 from app.theme import Palette
+from app.widgets.text import Label
 
 WHEEL_STEP = 1.2
 MIN_LANE_PX = 40
@@ -33,6 +33,8 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
     session : whose curves are shown
     inference : where a tool's asked curves go
     """
+
+    menu_wanted = Signal(str, QPoint)  # curve, lane, or here for all that is at the playhead; where on the screen
 
     def __init__(self, session: Session, inference: Inference, colours: Palette) -> None:
         super().__init__()
@@ -51,7 +53,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self._ring = FocusRing(self._active_box, self._x_of)
         for item in (self._underlay, self._playhead, self._ring):
             self.scene().addItem(item)
-        self.readout = QLabel(self)
+        self.readout = Label("", self)
         self.readout.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.readout.hide()
         self.tools = make_tools(self)
@@ -110,6 +112,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
             (kinds.DRAFT, self.tool.refresh),
             (kinds.TAKE | kinds.TOOL, self._take_up_tool),
             (kinds.TAKE | kinds.LANES | kinds.TOOL | kinds.VIEW | kinds.SELECTION | kinds.MARKS, self._show_marks),
+            (kinds.CURVES, self._show_marks),  # a fill that is kept is no span to work on any more
             (kinds.VIEW | kinds.SELECTION, self._follow),
         ):
             if change & cause:
@@ -120,7 +123,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
 
     def _show_marks(self) -> None:
         self._underlay.selection = self.session.selection
-        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.marks.spans]
+        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.open_spans]
         self._underlay.update()
         self._playhead.update()
 
@@ -294,12 +297,28 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self._pan_from = self._named = None
         self._growth.release()
 
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer what can be done with a curve and go there; with the menu key, at the playhead of the active lane."""
+        event.accept()
+        if self.tool.busy:
+            return
+        at, lane = QPointF(event.pos()), self.lane_at(QPointF(event.pos()))
+        if event.reason() == QContextMenuEvent.Reason.Keyboard:
+            box = self.lane(self.session.lane).scene_box()
+            place = QPointF(min(max(self._x_of(self.session.playhead), box.left()), box.right()), box.center().y())
+            self.menu_wanted.emit("here", self.mapToGlobal(self.mapFromScene(place)))
+        elif lane is not None:
+            self.session.choose_lane(lane)
+            if at.x() >= GUTTER_PX:
+                self.session.move_playhead(round(self.frame_at(at)))
+            self.menu_wanted.emit("curve" if at.x() >= GUTTER_PX else "lane", event.globalPos())
+
     def leaveEvent(self, event: object) -> None:
         """Put hints away with the pointer."""
         self.tool.leave()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom around the pointer; sideways or with Shift pan; while a button is held the tool's size changes."""
+        """Scroll the lanes; with Ctrl zoom around the pointer; sideways or with Shift pan; else change the tool's size."""
         turn = event.angleDelta()
         notches = (turn.y() or turn.x()) / 120.0
         if event.buttons() & Qt.MouseButton.LeftButton or event.modifiers() & Qt.KeyboardModifier.AltModifier:
@@ -308,8 +327,11 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
             first, last = self.session.view
             shift = -notches * 0.1 * (last - first)
             self.session.set_view(first + shift, last + shift)
-        else:
+        elif event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             self.session.zoom_view(WHEEL_STEP**notches, self.frame_at(event.position()))
+        else:
+            event.ignore()  # for the scroll area around the lanes
+            return
         event.accept()
 
     # --- the panel itself

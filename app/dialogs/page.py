@@ -27,7 +27,9 @@ class Page(QDialog):
         self.setWindowTitle(title)
         self.setModal(False)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.text = QLabel(text)
+        self.text = QLabel()  # the only one with markup, whose text is the program's own: `in_columns` and `in_lines`
+        self.text.setTextFormat(Qt.TextFormat.RichText)
+        self.text.setText(text)
         self.text.setTextInteractionFlags(
             Qt.TextInteractionFlag.TextSelectableByMouse
         )  # versions and paths are for copying
@@ -46,14 +48,18 @@ def closing(dialog: QDialog) -> QPushButton:
     return button
 
 
+def in_lines(heading: str, lines: Sequence[str]) -> str:
+    """Return a heading and lines of plain text as rich text."""
+    return "<br>".join([f"<b>{escape(heading)}</b>", *map(escape, lines)])
+
+
 def in_columns(groups: Mapping[str, Sequence[tuple[str, str]]]) -> str:
     """Return named groups of pairs as rich text, in columns of about one height; a group is not torn apart."""
-    full = sum(1 + len(rows) for rows in groups.values()) / COLUMNS
-    columns, used = [""] * COLUMNS, 0.0
-    for name, rows in groups.items():
-        column = min(COLUMNS - 1, int((used + len(rows) / 2) / full))
-        columns[column] += _table(name, rows)
-        used += 1 + len(rows)
+    places, heights = dict.fromkeys(groups, 0), [0] * COLUMNS
+    for name in sorted(groups, key=lambda name: -len(groups[name])):  # the longest first: the rest fills what is left
+        places[name] = heights.index(min(heights))
+        heights[places[name]] += 2 + len(groups[name])
+    columns = ["".join(_table(name, groups[name]) for name in groups if places[name] == at) for at in range(COLUMNS)]
     cells = "".join(f"<td style='padding-right: {3 * GRID}px'>{column}</td>" for column in columns)
     return f"<table><tr>{cells}</tr></table>"
 

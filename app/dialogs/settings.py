@@ -23,6 +23,7 @@ from app.playback.media import Media
 from app.settings import PRESETS, Settings
 from app.theme import GRID
 from app.widgets.section import heading, quiet
+from engine.words import counted, plain, plural
 
 THEMES = {"Dark": "dark", "Light": "light", "As the system": "system"}
 COUNTS = {"Timecode": "timecode", "Frames": "frames"}
@@ -41,6 +42,7 @@ class SettingsDialog(QDialog):
     """
 
     changed = Signal(str)  # name of the setting
+    edit_keys = Signal()
 
     def __init__(self, settings: Settings, media: Media, parent: QWidget) -> None:
         super().__init__(parent)
@@ -58,6 +60,8 @@ class SettingsDialog(QDialog):
         self.playing, self.recent = quiet(""), quiet("")
         self.author = QLineEdit()
         self.author.setPlaceholderText("Your name in notes")
+        self.keys = QPushButton("Change keys…")
+        self.keys.clicked.connect(self.edit_keys)
         self.clear = QPushButton("Clear")
         self.clear.setAccessibleName("Clear recent files")
         self._lay_out()
@@ -72,7 +76,7 @@ class SettingsDialog(QDialog):
         grid.setColumnStretch(1, 1)
         rows: tuple[tuple[str, tuple[tuple[str, QWidget], ...]], ...] = (
             ("Look", (("Theme", self.theme), ("Ruler counts in", self.count))),
-            ("Keys", (("Shortcuts of", self.preset),)),
+            ("Keys", (("Shortcuts of", self.preset), ("", self.keys))),
             ("Sound", (("Plays on", self.speaker), ("", self.scrubs), ("", self.playing))),
             ("Notes", (("Author", self.author),)),
         )
@@ -152,7 +156,7 @@ class SettingsDialog(QDialog):
 
     def _show_recent(self) -> None:
         count = len(self._settings.recent)
-        self.recent.setText("1 file is remembered." if count == 1 else f"{count} files are remembered.")
+        self.recent.setText(f"{counted(count, 'file')} {plural(count, 'is', 'are')} remembered.")
         self.clear.setEnabled(count > 0)
 
     def _show_speakers(self, _: object, names: list[str]) -> None:
@@ -170,6 +174,6 @@ class SettingsDialog(QDialog):
         if not self._media.attached:
             self.playing.setText("No sound is attached to this take.")
         elif self._media.device:
-            self.playing.setText(f"Playing on {self._media.device}.")
+            self.playing.setText(f"Playing on {plain(self._media.device)}.")
         else:
             self.playing.setText("No loudspeaker was found: playback is silent.")

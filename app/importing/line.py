@@ -6,15 +6,17 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QComboBox, QFrame, QHBoxLayout, QLabel, QSizePolicy, QToolButton
+from PySide6.QtWidgets import QComboBox, QFrame, QHBoxLayout, QSizePolicy, QToolButton
 
 from app.session import Change, Session
 from app.session.commands import ReadingCommand
 from app.theme import GRID
+from app.widgets.text import Label, Name, tip
 from engine.errors import EngineError
 from engine.formats import livelink
 from engine.formats.importing import Imported, in_words
 from engine.formats.reading import AUTOMATIC, SIDES, SIDES_IN_WORDS, ReadAs, Reading
+from engine.words import NAME_LENGTH, plain
 
 RATES = ("23.976", "24", "25", "29.97", "30", "48", "50", "59.94", "60", "120")
 RATE_PX, SIDES_PX = 132, 230
@@ -37,7 +39,7 @@ class ImportLine(QFrame):
         self.setProperty("panel", True)
         self._session = session
         self._imported: Imported | None = None
-        self.name, self.rate_reason, self.sides_reason = QLabel(), _quiet(), _quiet()
+        self.name, self.rate_reason, self.sides_reason = Name(longest=NAME_LENGTH // 2), _quiet(), _quiet()
         self.rate, self.sides = _Choice(), _Choice()
         self.rate.setEditable(True)
         self.rate.setInsertPolicy(QComboBox.InsertPolicy.NoInsert)
@@ -175,20 +177,19 @@ class _Choice(QComboBox):
         event.ignore()
 
 
-class _Elided(QLabel):
+class _Elided(Label):
     """Sentences in one line, cut off at its end; the tip has all of them."""
 
     def __init__(self) -> None:
         super().__init__()
         self._text = ""
         self.setProperty("quiet", True)
-        self.setTextFormat(Qt.TextFormat.PlainText)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
 
     def tell(self, sentences: Sequence[str]) -> None:
         """Show sentences."""
-        self._text = " ".join(sentences)
-        self.setToolTip("\n".join(sentences))
+        self._text = plain(" ".join(sentences))
+        self.setToolTip(tip("\n".join(sentences)))
         self._fit()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -201,8 +202,7 @@ class _Elided(QLabel):
         self.setText(self.fontMetrics().elidedText(self._text, Qt.TextElideMode.ElideRight, self.width()))
 
 
-def _quiet(text: str = "") -> QLabel:
-    label = QLabel(text)
+def _quiet(text: str = "") -> Label:
+    label = Label(text)
     label.setProperty("quiet", True)
-    label.setTextFormat(Qt.TextFormat.PlainText)
     return label

@@ -37,8 +37,8 @@ class BrushSection(Section):
         self.column.addWidget(self.follow)
         self.radius.valueChanged.connect(self._set_radius)
         self._radius_slider.valueChanged.connect(lambda steps: self._set_radius(steps * STEP_S))
-        for widget in (self.strength, self._strength_slider):
-            widget.valueChanged.connect(self._set_strength)
+        self.strength.valueChanged.connect(self._set_strength)
+        self._strength_slider.valueChanged.connect(self._set_strength)
         self.exact.toggled.connect(self._set_exact)
         self.follow.toggled.connect(self._set_follow)
         session.changed.connect(self._on_change)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QLabel, QPushButton
+from PySide6.QtWidgets import QPushButton
 
 from app.session import Change, Session
 from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
 from app.widgets.section import Section, quiet
+from app.widgets.text import Label
 from engine.controls import bundled_measurer
 from engine.exact import shortfalls
 from engine.take import Array
+from engine.words import counted
 
 LEGEND = "Curves: grey as recorded, dashed as asked."
 
@@ -24,7 +26,8 @@ class FactsSection(Section):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "This edit")
-        self.told, self.facts = QLabel(wordWrap=True), quiet("")
+        self.told, self.facts = Label(), quiet("")
+        self.told.setWordWrap(True)
         self.column.addWidget(self.told)
         self.column.addWidget(self.facts)
         self.again_button = QPushButton("Apply to the last edit")
@@ -81,13 +84,13 @@ class FactsSection(Section):
     def _counts(self) -> str:
         session, draft, frames = self.session, self.session.draft, len(self.session.take)
         if draft is not None:
-            return f"moves {draft.stop - draft.start:,} of {frames:,} frames"
+            return f"moves {draft.stop - draft.start:,} of {counted(frames, 'frame')}"
         if not session.undo.index():
             return "Nothing changed yet. Drag a curve up or down."
         moved = int((session.take.weights != session.original.weights).any(axis=1).sum())
         if not moved:
             return "Every frame is as recorded."
-        return f"{moved:,} of {frames:,} frames changed, the rest is as recorded, bit for bit.\n{LEGEND}"
+        return f"{moved:,} of {counted(frames, 'frame')} changed, the rest is as recorded, bit for bit.\n{LEGEND}"
 
 
 def _told(

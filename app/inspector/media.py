@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from app.session import MAX_OFFSET_S, MEDIA, Change, Session
+from app.session.sound import beyond_the_take
 from app.widgets.section import Section, quiet
+from app.widgets.text import Label, tip
 from engine.project import name_of
 
 WORDS = {"audio": "Sound", "video": "Video"}
@@ -47,6 +49,7 @@ class MediaSection(Section):
             box.setVisible(record is not None)
             if record is not None:
                 box.show_medium(name_of(record), self.session.offset_s(kind), self.session.take.fps)
+                box.tell(beyond_the_take(self.session) if kind == "audio" else "")
         self.needed = bool(self.session.marks.media)
         self.setVisible(self.needed)
 
@@ -58,7 +61,8 @@ class _Box(QWidget):
         super().__init__()
         self.kind = kind
         word = WORDS[kind]
-        self.name = QLabel()
+        self.name = Label()
+        self.told = quiet("")
         self.away = QToolButton()
         self.away.setText("✕")
         self.away.setToolTip(f"Detach the {word.lower()}")
@@ -86,11 +90,17 @@ class _Box(QWidget):
         column.setSpacing(2)
         column.addLayout(top)
         column.addLayout(bottom)
+        column.addWidget(self.told)
+
+    def tell(self, text: str) -> None:
+        """Tell what should be known of the file, or nothing."""
+        self.told.setText(text)
+        self.told.setVisible(bool(text))
 
     def show_medium(self, name: str, offset_s: float, fps: float) -> None:
         """Show a file's name, and when it begins."""
         self.name.setText(name if len(name) <= NAME_CHARACTERS else f"{name[: NAME_CHARACTERS - 9]}…{name[-8:]}")
-        self.name.setToolTip(name)
+        self.name.setToolTip(tip(name))
         with QSignalBlocker(self.milliseconds), QSignalBlocker(self.frames):
             self.milliseconds.setValue(1e3 * offset_s)
             self.frames.setRange(-MAX_OFFSET_S * fps, MAX_OFFSET_S * fps)

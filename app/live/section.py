@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox
 from app.session import Change, Session
 from app.widgets.section import Section, quiet, slider
 from engine.errors import EngineError
+from engine.words import NAME_LENGTH, counted, plain
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
@@ -206,15 +207,16 @@ class LiveSection(Section):
         status = self._listener.status()
         if self.subjects.count() != len(status.subjects):
             self.subjects.clear()
-            self.subjects.addItems(list(status.subjects))
-        lines = [f"{status.frames:,} frames"]
+            for name in status.subjects:
+                self.subjects.addItem(plain(name, longest=NAME_LENGTH), name)
+        lines = [counted(status.frames, "frame")]
         if np.isfinite(status.latency_p95_ms):
             lines.append(f"clean {status.latency_p95_ms:.1f} ms after arrival")
         if self._shown_ms:
             lines.append(f"on screen {np.percentile(self._shown_ms, 95):.0f} ms after arrival")
         lines += [f"{count:,} {reason}" for reason, count in status.drops.items() if count]
         if self._recorder is not None:
-            lines.append(f"recording: {len(self._recorder):,} frames")
+            lines.append(f"recording: {counted(len(self._recorder), 'frame')}")
         self.status.setText("\n".join(lines))
 
     def _show_buttons(self) -> None:
@@ -226,7 +228,7 @@ class LiveSection(Section):
 
     def _choose_subject(self, _: int) -> None:
         if self._listener is not None:
-            self._listener.stream.choose(self.subjects.currentText())
+            self._listener.stream.choose(self.subjects.currentData())
 
     def _set_strength(self, percent: int) -> None:
         if self._listener is not None:

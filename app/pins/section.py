@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QLineEdit, QPushButton, QSlider, QSpinBox
+from PySide6.QtWidgets import QLineEdit, QPushButton, QSlider
 
 from app.session import Change, Session
 from app.session.inference import Inference
-from app.widgets.section import Section, quiet
+from app.widgets.section import CountBox, Section, quiet
 from app.widgets.weight_sliders import WeightSliders
 from engine.project import Pin
 
@@ -42,10 +42,8 @@ class PinsSection(Section):
         self._solver_for: tuple[object, ...] = ()
         self.hint = quiet("Move a slider: the pose is met at the playhead and eases out over the range.")
         self.column.addWidget(self.hint)
-        self.before, self.after = QSpinBox(), QSpinBox()
+        self.before, self.after = (CountBox("frame", lowest=0, highest=5000) for _ in range(2))
         for box in (self.before, self.after):
-            box.setRange(0, 5000)
-            box.setSuffix(" frames")
             box.valueChanged.connect(self._spread)
         self.row("Ease in", self.before)
         self.row("Ease out", self.after)

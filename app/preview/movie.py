@@ -6,14 +6,19 @@ import io
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from app.preview.camera import Camera
+from app.preview.encoding import codec_named
 from app.preview.renderer import Picture, Renderer, Shot
 from engine.character import Character, bundled
 from engine.formats.atomic import write_bytes
 from engine.take import Array, Take
+
+if TYPE_CHECKING:
+    from av.video.stream import VideoStream
 
 ASPECT = 0.8  # width / height of one head
 
@@ -55,17 +60,26 @@ def write_picture(takes: Sequence[Take], frame: int, path: Path, *, height: int)
     write_bytes(path, [stored.getvalue()])
 
 
-def write_movie(takes: Sequence[Take], path: Path, *, height: int, frames: tuple[int, int] | None = None) -> None:
-    """Write takes side by side as an H.264 MP4 at the first one's rate."""
+def write_movie(
+    takes: Sequence[Take],
+    path: Path,
+    *,
+    height: int,
+    frames: tuple[int, int] | None = None,
+    codec: str | None = None,
+) -> None:
+    """Write takes side by side as an MP4 at the first one's rate, with a codec of `CODECS` or the best there is."""
     import av
 
+    chosen = codec_named(codec)
     start, stop = frames or (0, max(len(take) for take in takes))
     stored = io.BytesIO()
     with av.open(stored, "w", format="mp4") as container:
         first = picture(takes, start, height=height)
-        stream = container.add_stream("libx264", rate=Fraction(takes[0].fps).limit_denominator(1001))
+        rate = Fraction(takes[0].fps).limit_denominator(1001)
+        stream = cast("VideoStream", container.add_stream(chosen.encoder, rate=rate))
         stream.width, stream.height, stream.pix_fmt = first.shape[1], first.shape[0], "yuv420p"
-        stream.options = {"crf": "18"}
+        stream.options = dict(chosen.options)
         for frame in range(start, stop):
             drawn = picture(takes, frame, height=height)
             container.mux(stream.encode(av.VideoFrame.from_ndarray(np.ascontiguousarray(drawn), format="rgb24")))

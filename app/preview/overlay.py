@@ -14,6 +14,7 @@ from app.preview.renderer import HEAT, HEAT_FULL_MM
 from app.session.sides import Dot, Side
 from app.theme import GRID
 from engine.take import Array, Mask
+from engine.words import NAME_LENGTH, plain
 
 DOT_PX, CHOSEN_PX, REACH_PX = 2.5, 5.0, 9.0
 NUMBER_PX, NAME_PX = 9, 12
@@ -65,7 +66,7 @@ class Overlay:
             self._draw_dots(painter, index)
             painter.setPen(TEXT)
             box = QRectF(view.left + GRID, 6, view.width - 2 * GRID, 18)
-            name = painter.fontMetrics().elidedText(side.label, Qt.TextElideMode.ElideMiddle, int(box.width()))
+            name = painter.fontMetrics().elidedText(plain(side.label), Qt.TextElideMode.ElideMiddle, int(box.width()))
             if side.hint:
                 middle = QRectF(view.left + 3 * GRID, 0, view.width - 6 * GRID, view.height)
                 painter.drawText(middle, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, side.hint)
@@ -92,7 +93,7 @@ class Overlay:
         font = painter.font()
         font.setPixelSize(NAME_PX if dot.chosen else NUMBER_PX)
         painter.setFont(font)
-        text = f"{dot.number} {dot.name}".strip() if dot.chosen else dot.number
+        text = plain(f"{dot.number} {dot.name}", longest=NAME_LENGTH) if dot.chosen else dot.number
         width, away = painter.fontMetrics().horizontalAdvance(text), (CHOSEN_PX if dot.chosen else DOT_PX) + 2
         left = at.x() + away + width > view.left + view.width
         _write(painter, at + QPointF(-away - width if left else away, -away + 1), text)

@@ -6,13 +6,21 @@ import time
 from dataclasses import replace
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import (
+    QColor,
+    QContextMenuEvent,
+    QImage,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+    QWheelEvent,
+)
 from PySide6.QtWidgets import (
     QComboBox,
     QFrame,
     QHBoxLayout,
-    QLabel,
     QSizePolicy,
     QSplitter,
     QToolButton,
@@ -30,9 +38,11 @@ from app.session import Change, Session
 from app.session.inference import Inference
 from app.session.sides import Side
 from app.theme import GRID
+from app.widgets.text import Label
 from engine.character import Character, bundled
 from engine.framing import framed
 from engine.take import Array
+from engine.words import SENTENCE_LENGTH, plain
 
 VIEWS = ("Before", "After", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
@@ -49,6 +59,7 @@ class Face(QWidget):
 
     camera_moved = Signal(object)
     clicked = Signal(QPointF)
+    menu_wanted = Signal(QPoint)  # on the screen
     resized = Signal()  # a picture of another size is wanted
 
     def __init__(self) -> None:
@@ -136,13 +147,26 @@ class Face(QWidget):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Let go; a press that went nowhere is a click."""
         self._grip = None
-        if (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX:
+        clicked = (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX
+        if clicked and event.button() == Qt.MouseButton.RightButton:
+            self.menu_wanted.emit(event.globalPosition().toPoint())
+        elif clicked:
             self.clicked.emit(event.position())
         self.setCursor(Qt.CursorShape.OpenHandCursor)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Frame the whole head from the front."""
+        self.frame_head()
+
+    def frame_head(self) -> None:
+        """Look at the whole head from the front."""
         self._move(Camera())
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer what can be done with the face; the mouse's own way is a right click, since a right drag pans."""
+        event.accept()
+        if event.reason() == QContextMenuEvent.Reason.Keyboard:
+            self.menu_wanted.emit(self.mapToGlobal(self.rect().center()))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom."""
@@ -168,6 +192,7 @@ class PreviewPanel(QFrame):
     failed = Signal(str, str)
     picked = Signal(int, int)  # which side was clicked, and the vertex there
     dot_clicked = Signal(str)  # name of a marker
+    view_changed = Signal(str)  # one of VIEWS
 
     def __init__(self, session: Session, inference: Inference) -> None:
         super().__init__()
@@ -178,7 +203,7 @@ class PreviewPanel(QFrame):
         self._sides: tuple[Side, ...] = ()
         self._narrow: list[int] = []  # what the panels' widths were before there were two heads
         self.face = Face()
-        self._frame_label = QLabel()
+        self._frame_label = Label()
         self._frame_label.setProperty("quiet", True)
         self._coarse = False
         self._spent_ms = self._quick_ms = 0.0  # what a picture took, with smooth edges and without
@@ -217,7 +242,7 @@ class PreviewPanel(QFrame):
         self.presets.activated.connect(lambda index: self.look_from(list(PRESETS)[index]))
         row.addWidget(self.presets)
         foot = QHBoxLayout()
-        hint = QLabel("Drag to orbit · wheel to zoom · hold B for before")
+        hint = Label("Drag to orbit · wheel to zoom · hold B for before")
         hint.setProperty("quiet", True)
         foot.addWidget(hint)
         foot.addStretch(1)
@@ -237,6 +262,7 @@ class PreviewPanel(QFrame):
         self.face.view = name
         for view, button in self.views.items():
             button.setChecked(view == name)
+        self.view_changed.emit(name)
         self.refresh(moving=False)  # nothing moves: a coarse picture first would flicker
 
     def look_from(self, name: str) -> None:
@@ -367,7 +393,7 @@ class PreviewPanel(QFrame):
     def _refused(self, wanted: Wanted, sentence: str, advice: str) -> None:
         self._off = True
         self.face.image = QImage()
-        self.face.message = f"Preview off\n\n{sentence}"
+        self.face.message = f"Preview off\n\n{plain(sentence, longest=SENTENCE_LENGTH)}"
         self.face.update()
         self.failed.emit(sentence, advice)
 

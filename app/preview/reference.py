@@ -10,7 +10,6 @@ from PySide6.QtGui import QColor, QImage, QPainter, QPaintEvent
 from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
-    QLabel,
     QSizePolicy,
     QToolButton,
     QVBoxLayout,
@@ -22,6 +21,7 @@ from app.playback.video import Frame, Picture, Video
 from app.preview.renderer import GROUND
 from app.session import Change, Session
 from app.theme import GRID
+from app.widgets.text import Label
 
 HEIGHT_PX = 180
 
@@ -107,7 +107,7 @@ class ReferencePanel(QFrame):
         self._on_change(Change.MEDIA)
 
     def _lay_out(self) -> None:
-        name = QLabel("Reference")
+        name = Label("Reference")
         name.setProperty("quiet", True)
         away = QToolButton()
         away.setText("✕")

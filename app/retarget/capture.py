@@ -10,6 +10,7 @@ from app.retarget.carry import Target, with_markers
 from engine.errors import EditError
 from engine.formats import markers
 from engine.formats.characters.marker_places import MarkerMatch, MarkerTable, match_markers
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.spacetime.source import Source
@@ -46,7 +47,7 @@ def captured(path: Path, neutral_frame: int, target: Target) -> Capture:
 
     read, doubt = markers.read(path), None
     if not 0 <= neutral_frame < len(read):
-        raise EditError(f"Frame {neutral_frame} is not within the capture, which has {len(read)} frames.")
+        raise EditError(f"Frame {neutral_frame} is not within the capture, which has {counted(len(read), 'frame')}.")
     try:
         table = match_markers(read.positions[neutral_frame], read.names)
     except EditError as error:

@@ -14,6 +14,7 @@ from app.widgets.section import Section, quiet
 from engine.formats.characters.frame import UNITS_MM, UPS
 from engine.formats.characters.names import Match, reviewed
 from engine.take import SHAPES
+from engine.words import counted
 
 LEFT_OUT = "left out"
 FOUND = "as found"
@@ -97,7 +98,7 @@ class HeadSection(Section):
         if made is None:
             return
         rows = made.matches if self.all_shapes.isChecked() else reviewed(made.matches)
-        counts = f"{sum(row.sure for row in made.matches)} of {len(made.matches)} shapes taken."
+        counts = f"{sum(row.sure for row in made.matches)} of {counted(len(made.matches), 'shape')} taken."
         self._facts.setText(" ".join([counts, *made.notices]))
         self.table.setVisible(bool(rows))
         self._list(tuple(rows))

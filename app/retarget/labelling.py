@@ -15,6 +15,7 @@ from engine.errors import EditError
 from engine.formats import labels as files
 from engine.formats.labels import LabelFile
 from engine.take import SHAPES
+from engine.words import counted
 
 
 class Labelling:
@@ -75,7 +76,7 @@ class Labelling:
         stored, frames, state = files.read(path), len(self._session.take), self._retargeting
         outside = [frame for frame in stored.labels if frame >= frames]
         if outside:
-            raise EditError(f"{path.name} labels frame {outside[0]}; the take has {frames} frames.")
+            raise EditError(f"{path.name} labels frame {outside[0]}; the take has {counted(frames, 'frame')}.")
         if state.method != LABELS:
             state.use(method=LABELS)
         known = state.target.path

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
+from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
 from app.retarget.labelling import Labelling
@@ -29,6 +32,8 @@ class LabelsBox(QWidget):
     frames : the listed frames' buttons, by frame
     weights : the target's pose at the playhead
     """
+
+    menu_wanted = Signal(QPoint)  # on the screen, after the playhead went to the labelled frame
 
     def __init__(self, session: Session, retargeting: Retargeting, labelling: Labelling) -> None:
         super().__init__()
@@ -88,6 +93,11 @@ class LabelsBox(QWidget):
             state = "labelled" if frame in labelled else "to label"
             button.setText(f"{timecode(frame / fps, fps)}  {frame} · {state}")
 
+    def _open_menu(self, frame: int, button: QPushButton, at: QPoint) -> None:
+        where = button.mapToGlobal(at)
+        self._session.move_playhead(frame)
+        self.menu_wanted.emit(where)
+
     def _lay_out_list(self, frames: list[int]) -> None:
         empty(self._list)
         self.frames = {}
@@ -95,6 +105,8 @@ class LabelsBox(QWidget):
             button = self.frames[frame] = QPushButton()
             button.setToolTip("Go to this frame")
             button.clicked.connect(lambda _=False, frame=frame: self._session.move_playhead(frame))
+            button.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+            button.customContextMenuRequested.connect(partial(self._open_menu, frame, button))
             self._list.addWidget(button)
         if len(frames) > SHOWN:
             self._list.addWidget(quiet(f"and {len(frames) - SHOWN} more"))

@@ -11,8 +11,10 @@ from app.retarget.placing import Placing
 from app.retarget.retargeting import Retargeting
 from app.session import Session
 from app.widgets.section import Section, quiet
+from app.widgets.text import tip
 from engine.formats.characters.marker_places import MarkerMatch
 from engine.spacetime.layout import MARKERS
+from engine.words import NAME_LENGTH, plain
 
 LIST_PX = 190
 ELSEWHERE = "left out"
@@ -98,8 +100,8 @@ class PlacesSection(Section):
             for row, name in enumerate(names):
                 state = _state(name, target, taken.get(name))
                 item = self.list.item(row)
-                item.setText(f"{row + 1}  {name}" + (f"  · {state}" if state else ""))
-                item.setToolTip(item.text())  # the panel is narrow, and studios' names are long
+                item.setText(f"{row + 1}  {plain(name, longest=NAME_LENGTH)}" + (f"  · {state}" if state else ""))
+                item.setToolTip(tip(item.text()))  # the panel is narrow, and studios' names are long
                 item.setForeground(QColor("#E69F00") if state == "not placed" else self.palette().text().color())
             chosen = self._placing.chosen
             self.list.setCurrentRow(names.index(chosen) if chosen in names else -1)

@@ -11,6 +11,7 @@ from app.retarget.retargeting import LABELS, MOVEMENT, Retargeting
 from app.retarget.strengths import StrengthSliders
 from app.session import Session
 from app.widgets.section import Section, quiet
+from engine.words import counted
 
 METHODS = {"Match the movement": MOVEMENT, "From a few labels": LABELS}
 
@@ -97,7 +98,7 @@ class RetargetSection(Section):
         """Show the state."""
         state = self._retargeting
         head, capture, labels = state.target.head, state.capture, state.method == LABELS
-        what = f"{capture.take.name}, {len(capture.names)} markers" if capture else self.session.take.name
+        what = f"{capture.take.name}, {counted(len(capture.names), 'marker')}" if capture else self.session.take.name
         self._source.setText(f"From: {what}" + ("" if capture else f" on {state.performance.head.name}"))
         self._target.setText(
             f"Opening {state.opening}…" if state.opening else f"To: {head.name if head else 'no head yet'}"
@@ -134,11 +135,13 @@ class RetargetSection(Section):
             return f"The take is on {state.target.head.name}. Choose another head to carry it on."
         if state.result is not None:
             said = [each for each in state.result.take.notices if each not in state.performance.take.notices]
-            return " ".join([f"Solved {len(state.result.take):,} frames: play them, then keep or drop them.", *said])
+            return " ".join(
+                [f"Solved {counted(len(state.result.take), 'frame')}: play them, then keep or drop them.", *said]
+            )
         if state.share is not None:
             return "You can go on looking meanwhile."
         if state.method == LABELS:
-            return f"{len(state.target.labels)} frames are labelled."
+            return f"{counted(len(state.target.labels), 'frame')} labelled."
         return "The preview follows at once, for the frames around the playhead."
 
     def _show_share(self, share: float) -> None:

@@ -15,6 +15,7 @@ from engine.character import Character, bundled
 from engine.errors import EditError
 from engine.spacetime.layout import standard
 from engine.take import Array
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.spacetime.source import Source
@@ -62,7 +63,7 @@ def _of_capture(capture: Source, frame: int, chosen: str) -> Side:
         Dot(name, place=place, number=str(number) if name == chosen else "", chosen=name == chosen)
         for number, (name, place) in enumerate(zip(capture.names, places, strict=True), 1)
     )
-    return Side(f"{capture.take.name} · {len(dots)} markers", None, None, dots, _box(capture.neutral))
+    return Side(f"{capture.take.name} · {counted(len(dots), 'marker')}", None, None, dots, _box(capture.neutral))
 
 
 def _on_head(target: Target, names: tuple[str, ...], chosen: str) -> tuple[Dot, ...]:

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QLabel, QSlider, QWidget
+from PySide6.QtWidgets import QGridLayout, QSlider, QWidget
 
 from app.widgets.section import quiet, slider
+from app.widgets.text import Label
 from engine.spacetime.matching import Matching
 
 STEPS = 50  # on either side of the middle; the lowest is none at all
@@ -51,9 +52,9 @@ class StrengthSliders(QWidget):
         grid.setVerticalSpacing(2)
         grid.setColumnStretch(0, 1)
         self.sliders: dict[str, QSlider] = {}
-        self._values: dict[str, QLabel] = {}
+        self._values: dict[str, Label] = {}
         for row, strength in enumerate(STRENGTHS):
-            value, bar = QLabel(), slider(-STEPS, STEPS)
+            value, bar = Label(), slider(-STEPS, STEPS)
             value.setAlignment(Qt.AlignmentFlag.AlignRight)
             bar.setAccessibleName(strength.title)
             bar.setToolTip(strength.tip)

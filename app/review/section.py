@@ -13,6 +13,7 @@ from app.theme import GRID
 from app.widgets.section import Section, quiet
 from engine.review.changes import Change as Difference
 from engine.review.report import REGION_TITLES, clock
+from engine.words import SENTENCE_LENGTH, counted, plain
 
 LIST_PX = 220
 LONGEST = 400  # characters of a verdict's sentence
@@ -78,7 +79,7 @@ class ReviewSection(Section):
         self.list.clear()
         for change in changes:
             amount = f"{change.control} {change.by_mm:+.1f} mm" if abs(change.by_mm) >= 0.05 else "slightly"
-            by = f"\n{'; '.join(change.edits)}" if change.edits else ""
+            by = f"\n{plain('; '.join(change.edits), longest=SENTENCE_LENGTH)}" if change.edits else ""
             item = QListWidgetItem(
                 f"{clock(change.start, fps)}  {REGION_TITLES[change.region]}, {amount}, "
                 f"{(change.stop - change.start) / fps:.2f} s{by}"
@@ -88,9 +89,8 @@ class ReviewSection(Section):
         if 0 <= row < len(changes):
             self.list.setCurrentRow(row)
         differ = sum(change.stop - change.start for change in changes)
-        count = "1 change" if len(changes) == 1 else f"{len(changes)} changes"
         self.summary.setText(
-            f"{count} over {differ:,} of {len(self.session.take):,} frames."
+            f"{counted(len(changes), 'change')} over {differ:,} of {counted(len(self.session.take), 'frame')}."
             if changes
             else "Nothing differs from the recording. Edit the take, or compare it with another one."
         )

@@ -25,6 +25,7 @@ from engine.formats import read_take
 from engine.formats.reading import Reading
 from engine.project import Contents, Project
 from engine.take import timecode
+from engine.words import counted
 
 log = logging.getLogger(__name__)
 STALE_S = 86_400.0  # a file that was being made this long ago never will be
@@ -52,7 +53,7 @@ class LeftOver:
     @property
     def sentence(self) -> str:
         """What to call it in a list."""
-        steps = "1 edit" if self.edits == 1 else f"{self.edits} edits"
+        steps = counted(self.edits, "edit")
         return f"{self.name} ({self.length}), {steps}, {self.changed.astimezone():%d %b %Y %H:%M}"
 
 

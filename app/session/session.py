@@ -95,6 +95,7 @@ class Session(QObject):
         self.strength, self.exact, self.follow, self.tool = 1.0, False, True, "drag"
         self.shows_removed = True
         self._restoring = False
+        self._open_spans: tuple[Take, Marks, tuple[Span, ...]] | None = None
         self.character: Character | None = None
         self.open(take, None)
         self.undo.cleanChanged.connect(self._on_clean_changed)
@@ -214,6 +215,22 @@ class Session(QObject):
     def name(self) -> str:
         """What to call the open take."""
         return self.path.name if self.path else self.take.name
+
+    @property
+    def open_spans(self) -> tuple[Span, ...]:
+        """The spans that are to be worked on: all but lost ones that a kept fill gave a face."""
+        if self._open_spans is None or self._open_spans[0] is not self.take or self._open_spans[1] is not self.marks:
+            still = self._lost_before()
+            spans = (each for each in self.marks.spans if each.kind != "lost" or still[each.stop] > still[each.start])
+            self._open_spans = (self.take, self.marks, tuple(spans))
+        return self._open_spans[2]
+
+    def _lost_before(self) -> Array:
+        """Return how many frames without a face lie before each frame, (frames + 1,): lost ones that nobody changed since."""
+        if not any(span.kind == "lost" for span in self.marks.spans):
+            return np.zeros(len(self.take) + 1)
+        lost = self.take.lost & (self.take.weights == self.original.weights).all(axis=1)
+        return np.append(0, np.cumsum(lost))
 
     @property
     def edited(self) -> bool:

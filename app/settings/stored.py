@@ -5,6 +5,7 @@ from __future__ import annotations
 import getpass
 import json
 from pathlib import Path
+from typing import TypeGuard
 
 import platformdirs
 
@@ -62,6 +63,15 @@ class Settings:
         self._stored.setValue("preset", name)
 
     @property
+    def keys(self) -> dict[str, tuple[str, ...]]:
+        """The user's own shortcuts by action, which count before those of the preset."""
+        return {name: tuple(str(key) for key in keys) for name, keys in self._mapping("keys").items() if _listed(keys)}
+
+    @keys.setter
+    def keys(self, keys: dict[str, tuple[str, ...]]) -> None:
+        self._stored.setValue("keys", json.dumps(keys))
+
+    @property
     def speaker(self) -> str:
         """Name of the loudspeaker to play on; empty for the system's own."""
         return str(self._stored.value("speaker", ""))
@@ -114,11 +124,19 @@ class Settings:
         self._stored.setValue("places", json.dumps(kept))
 
     def _places(self) -> dict[str, str]:
+        return {key: str(value) for key, value in self._mapping("places").items()}
+
+    def _mapping(self, name: str) -> dict[str, object]:
+        """Return what is stored as one JSON object; an empty one where it is none."""
         try:
-            stored = json.loads(str(self._stored.value("places", "{}")))
-        except ValueError:
+            stored = json.loads(str(self._stored.value(name, "{}")))
+        except (ValueError, RecursionError):
             return {}
-        return {str(key): str(value) for key, value in stored.items()} if isinstance(stored, dict) else {}
+        return stored if isinstance(stored, dict) else {}
+
+
+def _listed(keys: object) -> TypeGuard[list[str]]:
+    return isinstance(keys, list) and all(isinstance(key, str) for key in keys)
 
 
 def _login() -> str:

@@ -19,6 +19,7 @@ from engine.project import Span
 from engine.project.records import FILL
 from engine.speech.visemes import Cue
 from engine.take import Array, Mask, Take
+from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -159,7 +160,7 @@ class Filling(QObject):
         start, stop = request.steering.frames
         inputs = {**request.inputs, "seed": self.chosen_seed}
         self._forget()
-        title = f"fill {stop - start} frames"
+        title = f"fill {counted(stop - start, 'frame')}"
         self._session.undo.push(EditCommand(self._session, patch, title, kind=FILL, inputs=inputs))
 
     def drop(self) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QPoint, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
@@ -21,12 +22,14 @@ from app.session import Change, Session
 from app.session.commands import MarkCommand
 from app.spans.filling import Filling
 from app.spans.strip import Strip
-from app.widgets.section import Section, empty, quiet
+from app.widgets.section import CountBox, Section, empty, quiet
+from app.widgets.text import caption
 from engine.errors import EngineError
 from engine.formats import read_take
 from engine.inpaint.request import Style
 from engine.project import Span
 from engine.take import Take, timecode
+from engine.words import counted
 
 SHOWN_SPANS = 8
 REGIONS = {
@@ -50,6 +53,7 @@ class SpansSection(Section):
     """
 
     refused = Signal(str, str)
+    menu_wanted = Signal(QPoint)  # on the screen, after the span was chosen
 
     def __init__(self, session: Session, filling: Filling) -> None:
         super().__init__(session, "Spans")
@@ -103,9 +107,9 @@ class SpansSection(Section):
         self.guide_button.setToolTip("Another take of the same rate, such as a rough one from a webcam.")
         self.unguide_button = QPushButton("Without the guide")
         self.unguide_button.setToolTip("Fill without following the other take.")
-        self.guide_shift = QSpinBox(minimum=-999_999, maximum=999_999)
+        self.guide_shift = CountBox("frame", lowest=-999_999, highest=999_999)
         self.guide_shift.setToolTip("How many frames later in the guide the same moment lies.")
-        self._shift_row = _named("Guide is ahead by", self.guide_shift, "frames")
+        self._shift_row = _named("Guide is ahead by", self.guide_shift)
         self.fill_button, self.remove_button = QPushButton("Fill"), QPushButton("Unmark")
         self.fill_button.setProperty("primary", True)
         self.fill_button.setToolTip("Fill the chosen span (F)")
@@ -196,7 +200,7 @@ class SpansSection(Section):
             self._guide = read_take(path) if path else None
         except EngineError as error:
             self.refused.emit(error.sentence, error.advice)
-        self.guide_button.setText(f"Guide: {self._guide.name}" if self._guide else "Guide by a take…")
+        self.guide_button.setText(caption(f"Guide: {self._guide.name}") if self._guide else "Guide by a take…")
         for widget in (self._shift_row, self.unguide_button):
             widget.setVisible(self._guide is not None)
 
@@ -204,25 +208,34 @@ class SpansSection(Section):
         if change & Change.TAKE:
             self.guide_by(None)  # it was for the take before
             self.guide_shift.setValue(0)
-        if change & (Change.TAKE | Change.MARKS | Change.SELECTION | Change.VISEMES):
+        if change & (Change.TAKE | Change.MARKS | Change.SELECTION | Change.VISEMES | Change.CURVES):
             self._show_list()
             self._show()
 
     def _show_list(self) -> None:
         empty(self._list)
         spans, fps, chosen = self.session.marks.spans, self.session.take.fps, self.chosen
+        to_do = set(self.session.open_spans)
         for span in spans[:SHOWN_SPANS]:
-            kind = "lost" if span.kind == "lost" else "marked"
-            button = QPushButton(f"{timecode(span.start / fps, fps)}  {kind} · {span.stop - span.start} frames")
+            kind = "marked" if span.kind != "lost" else "lost" if span in to_do else "filled"
+            length = counted(span.stop - span.start, "frame")
+            button = QPushButton(f"{timecode(span.start / fps, fps)}  {kind} · {length}")
             button.setCheckable(True)
             button.setChecked(span == chosen)
             button.setToolTip("Go to this span and choose it")
             button.clicked.connect(lambda _=False, span=span: self._go_to(span))
+            button.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+            button.customContextMenuRequested.connect(partial(self._open_menu, span, button))
             self._list.addWidget(button)
         if len(spans) > SHOWN_SPANS:
-            self._list.addWidget(quiet(f"and {len(spans) - SHOWN_SPANS} more"))
+            self._list.addWidget(quiet(f"and {len(spans) - SHOWN_SPANS:,} more"))
         if not spans:
             self._list.addWidget(quiet("None. Drag in the spans lane to mark one."))
+
+    def _open_menu(self, span: Span, button: QPushButton, at: QPoint) -> None:
+        where = button.mapToGlobal(at)
+        self._go_to(span)  # which lists the spans anew
+        self.menu_wanted.emit(where)
 
     def _go_to(self, span: Span) -> None:
         self.session.select((span.start, span.stop))
@@ -243,19 +256,18 @@ class SpansSection(Section):
             self.visemes.setVisible(bool(filling.said(chosen)))
             names = {region: title for title, region in REGIONS.items()}
             with QSignalBlocker(self.region):
-                self.region.setCurrentText(names[chosen.region])
+                self.region.setCurrentText(names.get(chosen.region, next(iter(REGIONS))))
             pins = sum(chosen.start <= pin.frame < chosen.stop for pin in self.session.marks.pins)
-            self.note.setText(f"{pins} pin{'s' * (pins != 1)} inside will be met exactly." if pins else "")
+            self.note.setText(f"{counted(pins, 'pin')} inside will be met exactly." if pins else "")
             self.note.setVisible(bool(pins))
 
 
-def _named(title: str, box: QSpinBox, unit: str) -> QWidget:
-    """Return a number with its name before and its unit in it."""
+def _named(title: str, box: QSpinBox) -> QWidget:
+    """Return a number with its name before."""
     made = QWidget()
     row = QHBoxLayout(made)
     row.setContentsMargins(0, 0, 0, 0)
     row.addWidget(quiet(title), 1)
     row.addWidget(box)
-    box.setSuffix(f" {unit}")
     box.setAccessibleName(title)
     return made

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
@@ -17,24 +17,26 @@ from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
 from app.session import Change, Session
 from app.theme import GRID, Palette
 from app.timeline.flags import FLAGS_PX, FlagLane
-from app.timeline.marks import LANE_PX, draw_marks, draw_ranges, lanes
+from app.timeline.marks import LANE_PX, NEAR_PX, draw_marks, draw_ranges, lanes, nearest_mark
 from app.timeline.spans import SpanLane
 from app.timeline.viseme_editing import VisemeEditing
 from app.timeline.visemes import VISEMES_PX, Place
 from app.timeline.waveform import draw_waveform
+from app.widgets.text import tip
+from engine.project import Note, Pin
 from engine.take import timecode
 
-RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 66
+RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 84
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 SLACK_PX = 3  # a press that moves no farther is a click
 STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
 LAYOUT = (
     Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES | Change.REVIEW
 )  # what may bring lanes or take them away
-SHOWN = LAYOUT | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
+SHOWN = LAYOUT | Change.CURVES | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 HINTS = {
-    "": "Minutes, seconds and frames. Drag to scrub, Shift-drag selects, the wheel zooms.",
+    "": "Hours, minutes, seconds and frames. Drag to scrub, Shift-drag selects, the wheel zooms.",
     "audio": "Drag to move the sound against the face.",
     "spans": "Drag to mark a span, click one to choose it.",
     "visemes": "Drag the ends of a block, double-click to select it, right-click to change it.",
@@ -57,7 +59,9 @@ class Timeline(QWidget):
     """
 
     marked = Signal()  # the selection was drawn in the lane: it is to become a span
+    told = Signal(str)  # what is wrong at the flag that was clicked
     slid = Signal()  # the sound was dragged to where it is shown
+    menu_wanted = Signal(str, QPoint, str)  # kind of thing, where on the screen, what to say of it
 
     def __init__(self, session: Session, colours: Palette, *, gutter_px: int) -> None:
         super().__init__()
@@ -123,6 +127,11 @@ class Timeline(QWidget):
         fps = self._session.take.fps
         return self.lane_box("visemes").adjusted(0, 3, 0, -3), (first / fps, last / fps)
 
+    def _near(self, lane: str, x: float) -> Note | Pin | None:
+        """Return the pin or note of a lane at a place in the widget."""
+        within = self.frame_at(x + NEAR_PX) - self.frame_at(x)
+        return nearest_mark(self._session.marks, lane, self.frame_at(x), within)
+
     def _span_px(self) -> float:
         return max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
 
@@ -143,6 +152,8 @@ class Timeline(QWidget):
         painter, boxes = QPainter(self), self._lanes()
         painter.setPen(QColor(self._colours.quiet))
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        unit = "frame" if self.in_frames else "h : min : s : frame"
+        painter.drawText(QRectF(GRID, 4, self._gutter, 14), left, unit)
         for name, box in boxes.items():
             painter.drawText(QRectF(GRID, box.top(), self._gutter, box.height()), left, name)
         painter.setClipRect(QRectF(self._gutter, 0, self._span_px(), self.height()))
@@ -151,7 +162,7 @@ class Timeline(QWidget):
         self._draw_audio(painter)
         self.visemes.draw(painter, self._colours)
         marks, view = self._session.marks, self._session.view
-        self._spans.draw(painter, marks.spans, boxes["spans"], view, self._colours)
+        self._spans.draw(painter, self._session.open_spans, boxes["spans"], view, self._colours)
         self._flags.draw(painter, self._session.flags, boxes["flags"], view, self._colours)
         draw_ranges(painter, self._session.differences or (), (self.lane_box("changes"), view), self._colours)
         for name in lanes(marks):
@@ -214,6 +225,9 @@ class Timeline(QWidget):
             self._session.move_playhead(hit[0].start)
         elif lane == "flags" and (mark := self._flags.at(x)) is not None:
             self._session.move_playhead(mark.flag.start)
+            self.told.emit(mark.sentence)
+        elif (near := self._near(lane, x)) is not None:
+            self._session.move_playhead(near.frame)
         elif lane == "spans" or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             self._selecting, self._marking = frame, lane == "spans"
         elif lane == "audio":
@@ -270,21 +284,40 @@ class Timeline(QWidget):
             self.visemes.select(event.position().x())
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Offer what can be done with a viseme."""
-        if self._lane_at(event.y()) == "visemes":
-            self.visemes.open_menu(event.x(), event.globalPos(), self._colours)
+        """Offer what can be done with what lies under the pointer, and go there: the menu's actions work on it."""
+        lane, x = self._lane_at(event.y()), event.x()
+        if lane == "visemes":
+            self.visemes.open_menu(x, event.globalPos(), self._colours)
+            return
+        frame = round(self.frame_at(x))
+        span = next((each for each in self._session.marks.spans if each.start <= frame < each.stop), None)
+        mark = self._flags.at(x) if lane == "flags" else None
+        near = self._near(lane, x)
+        kind, told = ("audio", "") if lane == "audio" else ("time", "")
+        if lane == "spans" and span is not None:
+            self._session.select((span.start, span.stop))
+            kind, frame = "span", span.start
+        elif mark is not None:
+            kind, frame, told = "flag", mark.flag.start, mark.flag.sentence
+        elif near is not None:
+            kind, frame, told = lane.removesuffix("s"), near.frame, near.text if isinstance(near, Note) else ""
+        self._session.move_playhead(frame)
+        self.menu_wanted.emit(kind, event.globalPos(), told)
 
     def told_at(self, place: QPointF) -> str:
         """Return what to tell of a place in the widget."""
         lane = self._lane_at(place.y())
         mark = self._flags.at(place.x()) if lane == "flags" else None
+        near = self._near(lane, place.x())
         if mark is not None:
             return mark.sentence
+        if isinstance(near, Note):
+            return f"{near.text}\n{near.author}, {near.time}"
         said = self.visemes.tell(place.x()) if lane == "visemes" and place.x() >= self._gutter else ""
         return said or HINTS.get(lane, HINTS[""])
 
     def _show_pointer(self, place: QPointF) -> None:
-        self.setToolTip(self.told_at(place))
+        self.setToolTip(tip(self.told_at(place)))
         lane = self._lane_at(place.y())
         if lane == "visemes" and self.visemes.edge_at(place.x()) is not None:
             self.setCursor(Qt.CursorShape.SplitHCursor)

@@ -8,6 +8,7 @@ from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
 from app.theme import Palette
 from engine.project import Span
+from engine.words import NAME_LENGTH, plain
 
 GAP_PX = 2.0  # a span that ends this near to the one before is not drawn
 NAME_PX = 24  # boxes below this have no name
@@ -23,7 +24,7 @@ class SpanLane:
     def draw(
         self, painter: QPainter, spans: tuple[Span, ...], box: QRectF, view: tuple[float, float], colours: Palette
     ) -> None:
-        """Draw the spans that reach into a view, first and last frame, in a box whose edges those are."""
+        """Draw the spans to work on that reach into a view, first and last frame, in a box whose edges those are."""
         if spans is not self._spans:
             self._spans = spans
             self._frames = np.array([(span.start, span.stop) for span in spans], float).reshape(-1, 2) - 0.5
@@ -49,7 +50,7 @@ class SpanLane:
 
 
 def _draw_name(painter: QPainter, span: Span, box: QRectF, colours: Palette) -> None:
-    title = "lost" if span.kind == "lost" else span.region
+    title = "lost" if span.kind == "lost" else plain(span.region, longest=NAME_LENGTH)
     text = painter.fontMetrics().horizontalAdvance(title) + 10
     if box.width() > text + 4:
         label = QRectF(box.center().x() - text / 2, box.top() + 1, text, box.height() - 2)

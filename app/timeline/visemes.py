@@ -10,6 +10,7 @@ from app.theme import Palette
 from engine.speech.lane import GROUP_OF, GROUPS, VisemeLane
 from engine.speech.visemes import CLASSES, NAMES, class_of
 from engine.take import Array
+from engine.words import NAME_LENGTH, plain
 
 VISEMES_PX = 26
 EDGE_PX = 4  # how near a boundary the pointer takes hold of it
@@ -33,7 +34,7 @@ def group_of(label: str) -> int:
 def describe(lane: VisemeLane, index: int) -> str:
     """Return what to tell of a cue."""
     cue, (start_s, stop_s) = lane.cues[index], lane.times_s[index]
-    label = cue.label.strip() or "silence"
+    label = plain(cue.label, longest=NAME_LENGTH) or "silence"
     group = list(GROUPS)[group_of(cue.label)]
     return f"{label}: {group}, {start_s:.2f} to {stop_s:.2f} s. Drag its ends, double-click to select, right-click to change."
 
@@ -153,7 +154,8 @@ def _draw_name(painter: QPainter, label: str, box: QRectF, ends: tuple[float, fl
     painter.drawLine(QPointF(left, box.top()), QPointF(left, box.bottom()))
     painter.drawLine(QPointF(right, box.top()), QPointF(right, box.bottom()))
     left, right = max(left, box.left()), min(right, box.right())  # the name stays in sight for as long as its block is
-    for text in (label.strip(), label.strip().rstrip("012")):  # stress is the first thing to do without
+    name = plain(label, longest=NAME_LENGTH)
+    for text in (name, name.rstrip("012")):  # stress is the first thing to do without
         if painter.fontMetrics().horizontalAdvance(text) + ROOM_PX <= right - left:
             painter.setPen(QColor(colours.text))
             inside = QRectF(left, box.top(), right - left, box.height() - BAR_PX)

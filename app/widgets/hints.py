@@ -6,14 +6,15 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QLabel, QSizePolicy
+from PySide6.QtWidgets import QSizePolicy
 
 from app.theme import GRID
+from app.widgets.text import Label
 
 BETWEEN = "  ·  "
 
 
-class Hints(QLabel):
+class Hints(Label):
     """Takes whatever room the toolbar has left, told or not, so that no button ever moves."""
 
     def __init__(self) -> None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QLabel, QLayout, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QHBoxLayout, QLayout, QSlider, QSpinBox, QVBoxLayout, QWidget
 
 from app.session import Session
 from app.theme import GRID
+from app.widgets.text import Label
+from engine.words import plural
 
 NUMBER_PX = 96  # of every box with a number
 
@@ -61,16 +63,40 @@ def empty(layout: QLayout) -> None:
             old.deleteLater()
 
 
-def heading(text: str) -> QLabel:
+class CountBox(QSpinBox):
+    """A box with a number and the name of what it counts, one or many.
+
+    Parameters
+    ----------
+    noun : what one of it is called
+    lowest, highest : the range
+    """
+
+    def __init__(self, noun: str, *, lowest: int, highest: int) -> None:
+        super().__init__(minimum=lowest, maximum=highest)
+        self._noun = noun
+        self.valueChanged.connect(self._name)
+        self._name(self.value())
+
+    def setValue(self, value: int) -> None:
+        """Show a number; what it counts is named even while signals are blocked."""
+        super().setValue(value)
+        self._name(self.value())
+
+    def _name(self, number: int) -> None:
+        self.setSuffix(f" {plural(number, self._noun)}")
+
+
+def heading(text: str) -> Label:
     """Return a title."""
-    label = QLabel(text)
+    label = Label(text)
     label.setProperty("heading", True)
     return label
 
 
-def quiet(text: str) -> QLabel:
+def quiet(text: str) -> Label:
     """Return a label in the quiet colour that wraps."""
-    label = QLabel(text)
+    label = Label(text)
     label.setProperty("quiet", True)
     label.setWordWrap(True)
     return label

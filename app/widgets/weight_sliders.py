@@ -6,9 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QLabel, QLineEdit, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QLineEdit, QSlider, QVBoxLayout, QWidget
 
 from app.widgets.section import empty, quiet, slider
+from app.widgets.text import Label
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
 STEPS = 200
@@ -42,7 +43,7 @@ class WeightSliders(QWidget):
         self._grid.setColumnStretch(0, 1)
         column.addLayout(self._grid)
         self.sliders: dict[str, QSlider] = {}
-        self._values: dict[str, QLabel] = {}
+        self._values: dict[str, Label] = {}
 
     def show_face(self, weights: Array, activity: Array, moved: Mapping[str, float]) -> None:
         """List the weights of a face, (52,), the moved ones first, then by activity, (52,)."""
@@ -65,7 +66,7 @@ class WeightSliders(QWidget):
         empty(self._grid)
         self.sliders, self._values = {}, {}
         for row, name in enumerate(names):
-            label, number, bar = quiet(name), QLabel(), slider(0, STEPS)
+            label, number, bar = quiet(name), Label(), slider(0, STEPS)
             label.setWordWrap(False)
             number.setAlignment(Qt.AlignmentFlag.AlignRight)
             bar.setAccessibleName(name)

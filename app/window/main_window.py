@@ -8,6 +8,7 @@ from pathlib import Path
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
 from PySide6.QtWidgets import (
+    QApplication,
     QFrame,
     QHBoxLayout,
     QMainWindow,
@@ -20,10 +21,12 @@ from PySide6.QtWidgets import (
 from app import theme
 from app.actions.edit import EditActions
 from app.actions.file import FileActions
+from app.actions.marks import MarkActions
 from app.actions.media import MediaActions
 from app.actions.menus import Menus
 from app.actions.settings import SettingsActions
 from app.actions.time import TimeActions
+from app.actions.view import ViewActions
 from app.actions.viseme import VisemeActions
 from app.clean.section import CleanSection
 from app.curves.panel import CurvesPanel
@@ -32,6 +35,7 @@ from app.curves.tools import TOOLS
 from app.importing.line import ImportLine
 from app.inspector.brush import BrushSection
 from app.inspector.facts import FactsSection
+from app.inspector.flags import FlagsSection
 from app.inspector.media import MediaSection
 from app.inspector.panel import Inspector
 from app.inspector.smooth import SmoothSection
@@ -54,6 +58,8 @@ from app.spans.filling import Filling
 from app.spans.section import SpansSection
 from app.theme import GRID
 from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
+from app.widgets.text import PlainText, caption, tip, title
+from app.window.contexts import Contexts
 from app.window.focus import Focus
 from app.window.keyboard import Keyboard
 from app.window.missing import MissingMedia
@@ -112,6 +118,8 @@ class MainWindow(QMainWindow):
         self.live = LiveSection(self.session, self.keeper.folder)
         self.attached = MediaSection(self.session)
         self.notes = NotesSection(self.session)
+        self.flags = FlagsSection(self.session)
+        self.marks, self.views = MarkActions(self.session, self.notes, self.spans), ViewActions(self.preview)
         self.retarget = RetargetActions(self.session, self)
         self.review = ReviewActions(self.session, self)
         sections = (
@@ -125,11 +133,13 @@ class MainWindow(QMainWindow):
             self.spans,
             self.review.section,
             self.facts,
-            self.attached,
+            self.flags,
             self.notes,
+            self.attached,
         )
         self.inspector = Inspector(self.session, sections)
         self._closed = False
+        self._plain_text = PlainText(self)
         self.setAcceptDrops(True)
         self.menus = Menus(self, self.settings, self._do, self.files.load)
         self.actions_by_name = self.menus.actions
@@ -147,17 +157,8 @@ class MainWindow(QMainWindow):
     # --- building
 
     def _do(self, name: str) -> None:
-        owners = (
-            self,
-            self.files,
-            self.sound,
-            self.edits,
-            self.time,
-            self.visemes,
-            self.retarget,
-            self.review,
-            self.preferences,
-        )
+        tools = (self.edits, self.time, self.marks, self.views, self.visemes, self.retarget, self.review)
+        owners = (self, self.files, self.sound, *tools, self.preferences)
         owner = next(each for each in owners if name in type(each).__dict__)
         if name != "cancel":  # which would keep what is half typed
             self._focus.give_back()
@@ -211,10 +212,12 @@ class MainWindow(QMainWindow):
         self.session.changed.connect(self._on_change)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
         shown = (self.preview, self.media, self.reference, self.live, self.retarget, self.review)
-        for part in (*shown, self.inference, self.filling, self.keeper, self.visemes, self.timeline.visemes):
+        for part in (*shown, self.inference, self.filling, self.visemes, self.timeline.visemes, self.marks):
             part.failed.connect(self.notices.tell)
+        self.keeper.failed.connect(self.notices.hold)
         self.preview.timed.connect(self.status.timed)
         self._connect_media()
+        self._connect_retarget()
         self.notes.author = lambda: self.settings.author
         self.preferences.themed.connect(self._wear)
         for clock in (self.timeline, self.status):
@@ -228,30 +231,25 @@ class MainWindow(QMainWindow):
         self.smoothing.dropped.connect(self.inference.cancel)
         self.edits.cutoff_hz = self.smoothing.cutoff.value
         self.edits.let_go = self.timeline.visemes.drop
-        self.edits.told.connect(self.status["notice"].setText)
+        for told in (self.edits.told, self.time.told, self.timeline.told):
+            told.connect(self.status.tell)
+        self.edits.put_away = self.notices.put_away
         self.time.looping = self.actions_by_name["loop"].isChecked
         self.live.face.connect(self.preview.show_live)
         self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
-        self.retarget.shown.connect(self.preview.show_sides)
-        self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
-        self.preview.picked.connect(self.retarget.pick)
-        self.preview.dot_clicked.connect(self.retarget.placing.choose)
-        self.edits.stop_else = self.retarget.retargeting.cancel
-        self.files.capture_dropped.connect(self.retarget.take_in)
-        self.files.character_chosen.connect(self.retarget.retargeting.show_on)
-        self.retarget.retargeting.head_read.connect(self.preview.show_character)
-        self.retarget.retargeting.told.connect(self.status["notice"].setText)
-        self.review.told.connect(self.status["notice"].setText)
+        self.review.told.connect(self.status.tell)
         self.review.open_take = self.files.open_then
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
         self.timeline.visemes.wanted.connect(self._do)
         self.files.cues_dropped.connect(self.visemes.attach)
         self.files.told.connect(self.notices.tell)
+        self.files.wrote.connect(self.notices.say)
         self.files.opened.connect(self._show_opened)
         self.filling.changed.connect(self._show_filling)
         self.spans.refused.connect(self.notices.tell)
+        self._contexts = Contexts(self)
         self.timeline.marked.connect(self.spans.mark)
         self.spans.strip.wanted.connect(self.preview.draw_strip)
         self.preview.strip_drawn.connect(self.spans.strip.show_picture)
@@ -265,6 +263,17 @@ class MainWindow(QMainWindow):
         self._keyboard = Keyboard(self, self.preview)
         self._focus = Focus(self, self.curves, (self.timeline, self.preview.face))
         self._focus.give_back()
+
+    def _connect_retarget(self) -> None:
+        self.retarget.shown.connect(self.preview.show_sides)
+        self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
+        self.preview.picked.connect(self.retarget.pick)
+        self.preview.dot_clicked.connect(self.retarget.placing.choose)
+        self.edits.stop_else = self.retarget.retargeting.cancel
+        self.files.capture_dropped.connect(self.retarget.take_in)
+        self.files.character_chosen.connect(self.retarget.retargeting.show_on)
+        self.retarget.retargeting.head_read.connect(self.preview.show_character)
+        self.retarget.retargeting.told.connect(self.status.hold)
 
     def _connect_importing(self) -> None:
         self.importing.refused.connect(self.notices.tell)
@@ -305,7 +314,7 @@ class MainWindow(QMainWindow):
         from_file = self.keeper.path is None and self.session.path not in (None, demo.BUNDLED)
         self.importing.tell(self.files.imported, shown=from_file)
         there = from_file and self.importing.there  # it has what was noticed
-        self.status["notice"].setText("" if there else " ".join(self.session.take.notices))
+        self.status.tell("" if there else " ".join(self.session.take.notices))
         self._show_importing()
 
     def show_import(self) -> None:
@@ -350,6 +359,7 @@ class MainWindow(QMainWindow):
     def shut_down(self) -> None:
         """End the threads; the window cannot be used after."""
         self._keyboard.let_go()
+        self._plain_text.let_go()
         self._focus.let_go()
         self.transport.run(0.0)
         self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
@@ -373,14 +383,6 @@ class MainWindow(QMainWindow):
         """End the program; what is not saved is kept for the next start."""
         self.close()
 
-    def fill(self) -> None:
-        """Fill the chosen span, or the selection."""
-        self.spans.fill()
-
-    def note(self) -> None:
-        """Type a note on the frame at the playhead."""
-        self.notes.entry.setFocus()
-
     def _show_filling(self) -> None:
         # Enter belongs to the buttons too, unless there is a variant to keep
         self.actions_by_name["accept"].setEnabled(bool(self.filling.variants))
@@ -399,6 +401,7 @@ class MainWindow(QMainWindow):
 
     def _wear(self, colours: theme.Palette) -> None:
         self.colours = colours
+        QApplication.setPalette(theme.qt_palette(colours))
         self.setStyleSheet(theme.style_sheet(colours))
         self.curves.paint_with(colours)
         self.timeline.paint_with(colours)
@@ -414,18 +417,18 @@ class MainWindow(QMainWindow):
         if change & (Change.TAKE | Change.VISEMES):
             for name in ("shift_visemes", "restore_visemes", "remove_visemes"):
                 self.actions_by_name[name].setEnabled(self.session.visemes is not None)
-        if change & (Change.TAKE | Change.MARKS | Change.SAVED):
+        if change & (Change.TAKE | Change.MARKS | Change.SAVED | Change.CURVES):
             self._show_hints()
         if change & Change.TOOL:
             self._show_tool()
 
     def _show_title(self, *_: object) -> None:
-        self.setWindowTitle(f"{self.session.name}[*] - Retake")
+        self.setWindowTitle(f"{title(self.session.name)}[*] - Retake")
         self.setWindowModified(self.session.edited)
 
     def _show_hints(self) -> None:
         session, stack = self.session, self.session.undo
-        self.menus.show_hints(changed=stack.count() > 0, saved=not session.edited, hatched=bool(session.marks.spans))
+        self.menus.show_hints(changed=stack.count() > 0, saved=not session.edited, hatched=bool(session.open_spans))
 
     def _show_undo(self, *_: int) -> None:
         stack = self.session.undo
@@ -436,8 +439,9 @@ class MainWindow(QMainWindow):
         ):
             action = self.actions_by_name[name]
             action.setEnabled(able)
-            action.setText(f"{name.capitalize()} {text}".strip())
-            action.setToolTip(f"{action.text()}  ({action.shortcut().toString()})")
+            words = f"{name.capitalize()} {text}".strip()
+            action.setText(caption(words))
+            action.setToolTip(tip(f"{words}  ({action.shortcut().toString()})"))
 
     def _show_transport(self) -> None:
         self.actions_by_name["play"].setChecked(self.transport.playing)

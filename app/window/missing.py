@@ -5,10 +5,11 @@ from __future__ import annotations
 from functools import partial
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from app.theme import GRID
 from app.widgets.section import empty
+from app.widgets.text import Label, caption
 from engine.project import Found, name_of
 
 
@@ -40,14 +41,14 @@ class MissingMedia(QFrame):
         row.setContentsMargins(0, 0, 0, 0)
         changed = found.changed is not None
         advice = " Its content has changed." if changed else " It was moved, renamed or deleted."
-        text = QLabel(found.sentence + advice)
+        text = Label(found.sentence + advice)
         text.setWordWrap(True)
         row.addWidget(text, 1)
         buttons = [(f"Locate {name_of(found.media)}…", self.locate.emit), ("Detach it", self.detach.emit)]
         if changed:
             buttons.insert(0, ("Use it all the same", self.accept.emit))
         for number, (title, do) in enumerate(buttons):
-            button = QPushButton(title)
+            button = QPushButton(caption(title))
             button.setProperty("primary", number == 0)
             button.clicked.connect(partial(_called, do, kind))
             row.addWidget(button)

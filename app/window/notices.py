@@ -4,34 +4,47 @@ from __future__ import annotations
 
 import logging
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton
+from PySide6.QtCore import QEvent, Qt, QTimer
+from PySide6.QtGui import QEnterEvent
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QToolButton
 
 from app.theme import GRID
+from app.widgets.text import Label
 
+SHOWN_MS, READ_MS = 6_000, 60  # how long a notice stays at least, and longer by each of its characters
 log = logging.getLogger(__name__)
 
 
 class Notices(QFrame):
-    """One sentence, what to do about it, and a button to put it away."""
+    """One sentence and what to do about it; it goes by itself when it was there long enough to be read.
+
+    Escape and a button put it away at once. It stays while the pointer is on it or another window is worked in, and what
+    endangers the work stays until it is over: `hold`.
+    """
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("banner")
         row = QHBoxLayout(self)
         row.setContentsMargins(2 * GRID, GRID - 2, GRID, GRID - 2)
-        self.text = QLabel()
+        self.text = Label()
         self.text.setWordWrap(True)
         self.text.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         row.addWidget(self.text, 1)
-        self.dismiss = QPushButton("OK")
+        self.dismiss = QToolButton()
+        self.dismiss.setText("✕")
+        self.dismiss.setToolTip("Put this away (Escape)")
+        self.dismiss.setAccessibleName("Put the notice away")
         self.dismiss.clicked.connect(self.hide)
-        row.addWidget(self.dismiss)
+        row.addWidget(self.dismiss, 0, Qt.AlignmentFlag.AlignTop)
+        self.fading = QTimer(self, singleShot=True)
+        self.fading.timeout.connect(self._fade)
+        self._stays = False
         self.hide()
 
     def add(self, sentence: str) -> None:
         """Put another sentence after what is shown."""
-        self.tell(self.text.text(), sentence)
+        self._show(self.text.text(), sentence, stays=self._stays)
 
     def withdraw(self, sentence: str) -> None:
         """Put a sentence away that is true no more, if it is still shown."""
@@ -39,7 +52,50 @@ class Notices(QFrame):
             self.hide()
 
     def tell(self, sentence: str, advice: str = "") -> None:
-        """Show a sentence and an advice until it is put away or replaced."""
+        """Show a sentence and an advice for as long as it takes to read them."""
         log.warning("%s %s", sentence, advice)
+        self._show(sentence, advice, stays=False)
+
+    def hold(self, sentence: str, advice: str = "") -> None:
+        """Show a sentence and an advice until they are put away, withdrawn or replaced."""
+        log.warning("%s %s", sentence, advice)
+        self._show(sentence, advice, stays=True)
+
+    def say(self, sentence: str, advice: str = "") -> None:
+        """Show what is no fault, such as what was written."""
+        self._show(sentence, advice, stays=False)
+
+    def put_away(self) -> bool:
+        """Put the notice away; returns whether there was any."""
+        shown = self.isVisible()
+        self.hide()
+        return shown
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        """Stay for as long as the pointer is here."""
+        super().enterEvent(event)
+        self.fading.stop()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """Go a while after the pointer left."""
+        super().leaveEvent(event)
+        self._begin_to_fade()
+
+    def _show(self, sentence: str, advice: str, *, stays: bool) -> None:
         self.text.setText(f"{sentence} {advice}".strip())
+        self._stays = stays
         self.show()
+        self.fading.stop()
+        if not self.underMouse():
+            self._begin_to_fade()
+
+    def _begin_to_fade(self) -> None:
+        if not self._stays and not self.isHidden():
+            self.fading.start(SHOWN_MS + READ_MS * len(self.text.text()))
+
+    def _fade(self) -> None:
+        """Go, unless nobody looks: then wait on."""
+        if self.window().isActiveWindow():
+            self.hide()
+        else:
+            self._begin_to_fade()

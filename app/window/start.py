@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from types import TracebackType
 
+from app.printing import remark
 from engine.errors import EngineError
 from engine.formats import read_take
 from engine.performance import demo
@@ -18,7 +19,7 @@ DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
 def start(path: Path | None) -> int:
     """Open a take, or the bundled one, in a window; returns when it is closed."""
     if sys.platform == "linux" and not any(os.environ.get(name) for name in DISPLAYS):
-        print("There is no display to open the window on. The commands work without: retake --help.", file=sys.stderr)
+        remark("There is no display to open the window on. The commands work without: retake --help.")
         return 2
     from PySide6.QtCore import QTimer
     from PySide6.QtWidgets import QApplication

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QSizePolicy
 
 from app.playback.media import Media
 from app.session import Change, Session
 from app.session.keeper import Keeper
 from app.session.opening import Opening
+from app.session.sound import beyond_the_take
 from app.theme import GRID
 from app.widgets.progress import Progress
+from app.widgets.text import Label, Name, tip
+from engine.formats.audio import Audio
 from engine.take import timecode
+from engine.words import counted, plain
 
+LONGEST = 40  # characters of a name in this line
 NAMES = ("take", "rate", "length", "place", "notice", "engine", "sound", "saved", "speed")
+TOLD_MS = 12_000  # how long something is told in passing
 LATENCIES = 20  # that the median is taken of
 
 
@@ -31,12 +38,16 @@ class StatusBar(QFrame):
         self._session, self._keeper, self._opening, self._media = session, keeper, opening, media
         self._latencies_ms: list[float] = []
         self.in_frames = False
-        self._labels = {name: QLabel() for name in NAMES}
+        self._sound: Audio | None = None  # whose length was told
+        self._passing = QTimer(self, singleShot=True)
+        self._labels = {name: Name(longest=LONGEST) if name == "take" else Label() for name in NAMES}
+        self._passing.timeout.connect(self._labels["notice"].clear)
         self.saving = Progress("Stop saving", keeper.stop_saving)
         self.opening = Progress("Stop opening", opening.stop)
         self._lay_out()
+        self._labels["notice"].setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self._labels["engine"].setText("loading networks…")
-        self["place"].setToolTip("Minutes, seconds and frames, and the frame counted from 0, at the playhead")
+        self["place"].setToolTip("Hours, minutes, seconds and frames, and the frame counted from 0, at the playhead")
         self["speed"].setToolTip("How long the face took to follow the mouse")
         session.changed.connect(self._on_change)
         keeper.saving_changed.connect(self._show_saving)
@@ -57,17 +68,26 @@ class StatusBar(QFrame):
                 row.addWidget(self.saving)
                 row.addWidget(self.opening)
 
-    def __getitem__(self, name: str) -> QLabel:
+    def __getitem__(self, name: str) -> Label:
         return self._labels[name]
+
+    def tell(self, text: str) -> None:
+        """Tell something in passing: it goes when it was there long enough to be read."""
+        self["notice"].setText(text)
+        self["notice"].setToolTip(tip(text))
+        self._passing.start(TOLD_MS)
+
+    def hold(self, text: str) -> None:
+        """Tell something until something else is told."""
+        self._passing.stop()
+        self["notice"].setText(text)
 
     def show_take(self, *_: object) -> None:
         """Tell what is open."""
         take = self._session.take
         self["take"].setText(self._session.name)
         self["rate"].setText(f"{take.fps:g} fps")
-        self["length"].setText(
-            f"{len(take):,} {'frame' if len(take) == 1 else 'frames'} · {timecode(take.duration_s, take.fps)}"
-        )
+        self["length"].setText(f"{counted(len(take), 'frame')} · {timecode(take.duration_s, take.fps)}")
         self.show_place()
         self._show_saved()
 
@@ -93,13 +113,17 @@ class StatusBar(QFrame):
             self.show_place()
         if change & (Change.TAKE | Change.CURVES | Change.SAVED):
             self._show_saved()
+        if change & Change.MEDIA and self._session.audio is not self._sound:
+            self._sound = self._session.audio
+            if beyond := beyond_the_take(self._session):
+                self.tell(beyond)
 
     def _show_saved(self) -> None:
         saving, opening = self._keeper.saving, self._opening.path
         saved = "saved" if self._keeper.path else ""
         told = "edits not saved yet" if self._session.edited else saved
-        under_way = [f"saving {saving.name}…"] if saving else []
-        under_way += [f"opening {opening.name}…"] if opening else []
+        under_way = [f"saving {plain(saving.name, longest=LONGEST)}…"] if saving else []
+        under_way += [f"opening {plain(opening.name, longest=LONGEST)}…"] if opening else []
         self["saved"].setText(" ".join(under_way) or told)
 
     def _show_saving(self) -> None:

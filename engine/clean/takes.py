@@ -11,6 +11,7 @@ from engine.clean.infer import Cleaner, bundled
 from engine.clean.lag import lag_ms
 from engine.errors import EditError
 from engine.take import Array, Mask, Take
+from engine.words import counted
 
 WARM_UP_S = 5.0  # listened to before a span, so that cleaning a span equals cleaning the take
 FEATHER_S = 0.1  # from raw to clean at the ends of a span
@@ -59,7 +60,7 @@ def clean(
     if not 0.0 <= strength <= 1.0:
         raise EditError(f"A strength of {strength:g} is not between 0 and 1.")
     if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
     if strength == 0.0:
         return Cleaned(take, np.zeros(take.weights.shape), 0.0, (start, start))
     first = max(0, start - round(WARM_UP_S * take.fps))

@@ -11,6 +11,7 @@ import numpy as np
 from engine.errors import EditError
 from engine.formats.budget import BUDGET
 from engine.take import Array
+from engine.words import counted
 
 CAPTURE_BUDGET = replace(BUDGET, values=40_000_000)  # 41 markers at 60 frames per second for an hour and a half
 
@@ -75,7 +76,7 @@ def each_once(names: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
         seen.add(name)
         found.append(name)
     said = (
-        f"{len(doubled)} markers have a name that another has too, such as {doubled[0][:40]}: numbered."
+        f"{counted(len(doubled), 'marker')} with a name that another has too, such as {doubled[0][:40]}: numbered."
         if doubled
         else ""
     )

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from engine.formats.livelink_origin import lost_frames
 from engine.formats.livelink_timecode import LONGEST_STEP_S, SHORTEST_STEP_S, Style, middle, read_times
 from engine.take import Array, Mask, runs
+from engine.words import counted, plural
 
 STANDARD_FPS = (
     *(15.0, 20.0, 24000 / 1001, 24.0, 25.0, 30000 / 1001, 30.0, 48.0, 50.0),
@@ -322,11 +323,7 @@ def _said_missed(rows: npt.NDArray[np.int64], fps: float) -> list[str]:
     missed, lost = int(rows[-1]) + 1 - len(rows) - int(gone.sum()), int(gone.sum())
     said = []
     if missed:
-        said.append(
-            "1 missed frame was filled in by interpolation."
-            if missed == 1
-            else f"{missed} missed frames were filled in by interpolation."
-        )
+        said.append(f"{counted(missed, 'missed frame')} {plural(missed, 'was', 'were')} filled in by interpolation.")
     if lost:
         gaps = len(runs(gone))
         where = "a gap" if gaps == 1 else f"{gaps} gaps"

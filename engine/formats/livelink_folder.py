@@ -22,6 +22,7 @@ from engine.formats.content import content_of, require_file
 from engine.formats.livelink_clock import FALLBACK_FPS
 from engine.formats.reading import AUTOMATIC, FASTEST_FPS, SLOWEST_FPS, Reading
 from engine.take import Take
+from engine.words import counted
 
 CARD = "take.json"
 CARD_SAYS = {"slate", "subject", "videoTargetFrameRate", "startTimecode", "deviceModel", "calibrated"}
@@ -178,7 +179,7 @@ def _parts(names: Iterable[str], where: str, like: str | None = None) -> Parts:
     if not groups:
         raise FormatError(f"{where} holds no take.", "A take is a CSV file that Live Link Face records.")
     if len(groups) > 1:
-        raise FormatError(f"{where} holds {len(groups)} takes.", ADVICE)
+        raise FormatError(f"{where} holds {counted(len(groups), 'take')}.", ADVICE)
     (folder, stem), group = next(iter(groups.items()))
     table = like if like in group and _kind(like or "") != NEUTRAL else _best(group)
     beside = [name for name in listed if str(_path(name).parent) == folder]

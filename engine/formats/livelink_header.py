@@ -10,6 +10,7 @@ import numpy.typing as npt
 from engine.errors import FormatError
 from engine.formats.livelink_sides import recorded_name
 from engine.take import SHAPE_INDEX, SHAPES
+from engine.words import counted
 
 ROTATIONS = (
     "HeadYaw",
@@ -51,7 +52,7 @@ def columns_of(header: tuple[str, ...], name: str, *, swapped: bool) -> Columns:
         raise FormatError(f"{name} names a column twice in its first row.")
     missing = [shape for shape in SHAPES if shape.lower() not in found and shape != "tongueOut"]
     if missing:
-        raise FormatError(f"{name} lacks the column {missing[0]} ({len(missing)} shapes are missing).", EXPECTED)
+        raise FormatError(f"{name} lacks the column {missing[0]} ({counted(len(missing), 'shape')} missing).", EXPECTED)
     shapes = [(SHAPE_INDEX[recorded_name(shape, swapped=swapped)], shape.lower()) for shape in SHAPES]
     rotations = [(index, rotation.lower()) for rotation, index in ROTATION_INDEX.items()]
     pairs = [[(index, found[cell]) for index, cell in group if cell in found] for group in (shapes, rotations)]

@@ -11,6 +11,7 @@ import numpy as np
 from engine.errors import FormatError
 from engine.formats.capture import CAPTURE_BUDGET, TO_MM, Markers, each_once
 from engine.formats.content import require_file, unread
+from engine.words import counted
 
 EXPECTED = "Retake reads C3D files with labelled points."
 HEADER_BYTES = 512
@@ -29,10 +30,10 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     positions = np.ascontiguousarray(data[:3].transpose(2, 1, 0))
     count = positions.shape[1]
     if not given or not count or not len(positions):
-        raise FormatError(f"{path.name} holds {count} points but names {len(given)}.", EXPECTED)
+        raise FormatError(f"{path.name} holds {counted(count, 'point')} but names {len(given)}.", EXPECTED)
     notices = []
     if len(given) < count:
-        notices.append(f"The file names {len(given)} of its {count} points: the others go by their place.")
+        notices.append(f"The file names {len(given)} of its {counted(count, 'point')}: the others go by their place.")
     labels, doubled = each_once([*given[:count], *[""] * (count - len(given))])
     residuals = np.asarray(content["data"]["meta_points"]["residuals"]).reshape(-1, data.shape[1], data.shape[2])[0].T
     gap = ~np.isfinite(positions).all(axis=2) | (residuals < 0) | (positions == 0).all(axis=2)

@@ -14,6 +14,7 @@ from engine.inpaint.regions import region_shapes
 from engine.pose import Pose, filled
 from engine.speech.visemes import Cue, class_of
 from engine.take import SHAPES, Array, Take
+from engine.words import counted
 
 LOWEST, HIGHEST = -0.1, 1.1  # recorded weights stray a little outside 0..1
 FARTHEST_MM = 1000.0  # more than this is a slip; far more would overflow
@@ -81,7 +82,7 @@ def checked(request: Request, take: Take) -> Request:
 def _check_span(request: Request, take: Take) -> None:
     start, stop = request.frames
     if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
     if stop - start < 2 and not request.lost:
         raise EditError("A span of one frame cannot be filled.", "Mark at least two frames.")
     if request.style not in STYLES:
@@ -118,7 +119,7 @@ def _check_guide(request: Request, guide: Take, take: Take) -> None:
     first, last = request.frames[0] + request.guide_offset, request.frames[1] + request.guide_offset
     if first < 0 or last > len(guide):
         raise EditError(
-            f"The guide has {len(guide)} frames and does not cover the span, which needs its frames {first}:{last}.",
+            f"The guide has {counted(len(guide), 'frame')} and does not cover the span, which needs its frames {first}:{last}.",
             "Use a longer guide, or another offset.",
         )
     if guide.lost[first:last].all():
@@ -130,7 +131,7 @@ def _curve(name: str, curve: Array | float, length: int) -> Array:
     asked = np.asarray(curve, np.float64)
     if asked.ndim > 1 or asked.size not in (1, length):
         raise EditError(
-            f"The curve for {name} has {asked.size} values where the span has {length} frames.",
+            f"The curve for {name} has {counted(asked.size, 'value')} where the span has {counted(length, 'frame')}.",
             "Give one value per frame of the span, or one for all.",
         )
     if (asked > FARTHEST_MM).any() or (asked < 0).any():

@@ -15,6 +15,7 @@ from engine.errors import EditError
 from engine.manifold.patches import Indices, LabelSolver, adjacency, alignment, cotangent_laplacian, rings
 from engine.manifold.pose import Poses, fit_similarity
 from engine.take import Array
+from engine.words import counted
 
 FEWEST = 4
 ANCHORS = 20  # points that carry a part without feature points
@@ -96,7 +97,7 @@ class MeshDriver:
         if positions.ndim != 3 or positions.shape[1:] != (len(self._points), 3):
             raise EditError(
                 f"The markers are {positions.shape[1] if positions.ndim == 3 else 0}, "
-                f"the mesh has {len(self._points)} feature points."
+                f"the mesh has {counted(len(self._points), 'feature point')}."
             )
         return np.stack(list(self.frames(positions))) if len(positions) else np.zeros((0, *self._rest.shape))
 
@@ -109,7 +110,9 @@ class MeshDriver:
         seen = np.asarray(np.isfinite(positions).all(axis=1))
         rest = self._rest[self._points]
         if seen.sum() < FEWEST:
-            raise EditError(f"A frame has only {int(seen.sum())} of {len(seen)} markers.", "Fill the gaps first.")
+            raise EditError(
+                f"A frame has only {int(seen.sum())} of {counted(len(seen), 'marker')}.", "Fill the gaps first."
+            )
         pose = fit_similarity(rest[seen], positions[None, seen])
         moved = np.zeros((len(rest), 3))
         moved[seen] = pose.undo(positions[None, seen])[0] - rest[seen]
@@ -135,7 +138,9 @@ def _require_usable(rest: Array, points: Indices) -> None:
     if not np.isfinite(rest).all():
         raise EditError("The mesh has a vertex that is not at a finite place.")
     if len(points) < FEWEST:
-        raise EditError(f"{len(points)} feature points are too few to drive a mesh.", "Pick at least four, better 80.")
+        raise EditError(
+            f"{counted(len(points), 'feature point')}: too few to drive a mesh.", "Pick at least four, better 80."
+        )
     if points.min() < 0 or points.max() >= len(rest):
         raise EditError(f"A feature point names vertex {points.max()}; the mesh has {len(rest)}.")
     values, counts = np.unique(points, return_counts=True)

@@ -12,6 +12,7 @@ from scipy.sparse import csgraph
 from engine.errors import EditError
 from engine.manifold.patches import Indices, adjacency
 from engine.take import Array
+from engine.words import counted
 
 SPACE_SHARE = 0.08  # mm of motion that one mm along the skin counts for; far less bares the brow, far more the lips
 
@@ -41,7 +42,9 @@ def place_points(
     """
     where = np.ones(len(vertices), bool) if allowed is None else allowed
     if count > where.sum():
-        raise EditError(f"{count} feature points do not fit on {int(where.sum())} vertices.")
+        raise EditError(
+            f"{counted(count, 'feature point')} cannot be placed on {counted(int(where.sum()), 'vertex', 'vertices')}."
+        )
     edges = adjacency(triangles, len(vertices)).tocoo()
     start, end = edges.row, edges.col
     unlike = np.sqrt(((motions[:, start] - motions[:, end]) ** 2).sum(axis=2).mean(axis=0))

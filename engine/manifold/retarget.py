@@ -13,6 +13,7 @@ from engine.errors import EditError
 from engine.manifold.patches import Indices, LabelSolver, Tell, alignment, silent, similar
 from engine.pose import Pose, filled
 from engine.take import SHAPES, Array, Take
+from engine.words import counted
 
 COORDINATES = 40  # principal coordinates that tell frames apart; the rest is noise, and slow to search
 GAIN_RIDGE = 0.3  # how far a gain is doubted, in labels of typical size: chosen on the validation takes
@@ -82,7 +83,9 @@ class Retargeter:
         """Return the target, (frames, q), for the labelled frames' values, (m, q)."""
         labels = np.asarray(labels, np.float64)
         if labels.shape != (len(self._labelled), self._base.shape[1]):
-            raise EditError(f"{len(labels)} labels were given for {len(self._labelled)} labelled frames.")
+            raise EditError(
+                f"{counted(len(labels), 'label')} given for {counted(len(self._labelled), 'labelled frame')}."
+            )
         if not np.isfinite(labels).all():
             raise EditError("A label holds a value that is not a finite number.")
         known = self._solver.solve(labels - self._base[self._labelled])
@@ -247,7 +250,7 @@ def _require_within(labelled: Indices, frames: int) -> None:
         raise EditError("There is no labelled frame.", "Pose the target at one frame or more.")
     outside = labelled[(labelled < 0) | (labelled >= frames)]
     if len(outside):
-        raise EditError(f"Frame {outside[0]} has a label; the source has {frames} frames.")
+        raise EditError(f"Frame {outside[0]} has a label; the source has {counted(frames, 'frame')}.")
 
 
 def _require_usable(source: Array, base: Array, labelled: Indices) -> None:

@@ -15,7 +15,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from engine.controls import CONTROLS
 from engine.quality import KINDS, Flag
 from engine.review.changes import Change, Comparison, Edited
-from engine.take import Array, Mask, Take, runs
+from engine.take import Array, Mask, Take, runs, timecode
 
 CHART_POINTS = 1200  # of a curve drawn in the report; more cannot be told apart at its width
 CHART_WIDTH, CHART_HEIGHT = 960, 64  # px
@@ -173,9 +173,8 @@ def _environment() -> Environment:
 
 
 def clock(frame: int, fps: float) -> str:
-    """Return the time of a frame as M:SS.mmm."""
-    seconds = frame / fps
-    return f"{int(seconds // 60)}:{seconds % 60:06.3f}"
+    """Return the time of a frame."""
+    return timecode(frame / fps, fps)
 
 
 def _row(number: int, change: Change, after: Take, picture: str) -> _Row:

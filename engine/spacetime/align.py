@@ -10,6 +10,7 @@ from scipy.spatial.distance import cdist, pdist, squareform
 
 from engine.errors import EditError
 from engine.take import Array, Mask
+from engine.words import counted
 
 FLAT = 1e-6  # extent across, relative to along, below which points lie in one plane or on one line
 SAME = 1e-6  # distance, relative to the whole extent, below which two markers are one
@@ -103,7 +104,7 @@ def _require_spread(sizes: Array, seen: Mask) -> None:
         raise EditError(
             f"In frame {frame} the markers do not tell how the head is turned: {int(seen[frame].sum())} are seen, "
             "and they lie on one line." if seen[frame].sum() >= 3 else
-            f"In frame {frame} only {int(seen[frame].sum())} markers are seen; three are needed to find the head.",
+            f"In frame {frame} only {counted(int(seen[frame].sum()), 'marker')} can be seen; three are needed to find the head.",
             "Cut that part of the capture out, or fill its gaps.",
         )  # fmt: skip
 
@@ -162,7 +163,9 @@ def check_points(points: Array, names: Sequence[str]) -> None:
     if missing:
         raise EditError(f"{_listed(missing)} missing in the neutral frame.", "Choose a neutral frame that has them.")
     if len(points) < 4:
-        raise EditError(f"Only {len(points)} markers correspond ({', '.join(names)}); four are needed at least.")
+        raise EditError(
+            f"Only {counted(len(points), 'marker')} in common ({', '.join(names)}); four are needed at least."
+        )
     extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     gaps = squareform(pdist(points))
     np.fill_diagonal(gaps, np.inf)

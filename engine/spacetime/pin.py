@@ -19,6 +19,7 @@ from engine.spacetime.layout import standard
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.system import Position, System
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take, runs
+from engine.words import counted
 
 FARTHEST_MM = 1000.0
 _CLOSE, _JAW = SHAPE_INDEX["mouthClose"], SHAPE_INDEX["jawOpen"]
@@ -215,7 +216,7 @@ def pin(
 def pose_reaching(take: Take, frame: int, controls: Mapping[str, float]) -> Array:
     """Return the pose, (52,), nearest to a frame's whose controls have given values in mm, as far as weights allow."""
     if not 0 <= frame < len(take):
-        raise EditError(f"Frame {frame} is not within the take, which has {len(take)} frames.")
+        raise EditError(f"Frame {frame} is not within the take, which has {counted(len(take), 'frame')}.")
     columns = np.array([control_index(name) for name in controls])
     asked = np.array([list(controls.values())], float)
     if not (np.abs(asked) <= FARTHEST_MM).all():
@@ -228,7 +229,7 @@ def pose_reaching(take: Take, frame: int, controls: Mapping[str, float]) -> Arra
 def _check(take: Take, pins: Mapping[int, Pose], frames: tuple[int, int]) -> None:
     start, stop = frames
     if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {len(take)} frames.")
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
     if not pins:
         raise EditError("There is no pin to spread.", "Pin a pose at a frame of the range.")
     for frame in pins:

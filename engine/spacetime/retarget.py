@@ -20,6 +20,7 @@ from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.source import Source, bridge
 from engine.spacetime.system import Position, System
 from engine.take import MODEL_FPS, SHAPE_INDEX, SHAPES, Array, Mask, Take
+from engine.words import counted
 
 TIGHTER = 0.8  # of the source's gap: what nearly closes errs on the closed side
 JAW_ROUNDS = 8
@@ -65,7 +66,7 @@ def correspond(source: Source, character: Character, layout: Layout | None = Non
     shared = [name for name in source.names if name in placed.names]
     if len(shared) < 4:
         raise EditError(
-            f"Only {len(shared)} of the source's {len(source.names)} markers have a place on {character.name!r}.",
+            f"Only {len(shared)} of the source's {counted(len(source.names), 'marker')} can be placed on {character.name!r}.",
             "Name a landmark file that says which vertex carries which marker.",
         )
     placed, columns = placed.pick(shared), [source.names.index(name) for name in shared]

@@ -15,6 +15,7 @@ from engine.spacetime.closure import GAPS, Gaps
 from engine.spacetime.denoise import denoise
 from engine.spacetime.layout import Layout, standard
 from engine.take import SHAPE_INDEX, Array, Mask, Take, runs
+from engine.words import counted
 
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 # Pairs of markers that meet, by gap. Lip markers sit on the outside: closed is how far apart they are at rest.
@@ -106,7 +107,7 @@ def from_markers(
     Raises `EditError` where that frame is not there or lacks markers, and where markers coincide or lie in one plane.
     """
     if not 0 <= neutral_frame < len(markers):
-        raise EditError(f"Frame {neutral_frame} is not within the capture, which has {len(markers)} frames.")
+        raise EditError(f"Frame {neutral_frame} is not within the capture, which has {counted(len(markers), 'frame')}.")
     neutral = markers.positions[neutral_frame]
     check_points(neutral, markers.names)
     head = stillest(markers.positions, neutral)

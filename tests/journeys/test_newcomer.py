@@ -107,5 +107,5 @@ def test_a_long_note_widens_nothing(qtbot: QtBot, window: MainWindow) -> None:
 def test_what_the_pointer_showed_goes_with_the_tool(qtbot: QtBot, window: MainWindow) -> None:
     QTest.mouseMove(window.curves.viewport(), QPoint(400, 60))
     qtbot.waitUntil(window.curves.readout.isVisible)
-    QTest.keyClick(window, Qt.Key.Key_K)
+    QTest.keyClick(window, Qt.Key.Key_P)
     assert not window.curves.readout.isVisible()

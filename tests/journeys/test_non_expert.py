@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QFileDialog
+from PySide6.QtWidgets import QFileDialog, QMessageBox
 from pytestqt.qtbot import QtBot
 
 from app.window.main_window import MainWindow
@@ -133,7 +133,12 @@ def test_close_here_shuts_the_lips_on_the_selection(qtbot: QtBot, window: MainWi
     assert window.session.undo.undoText() == "close lips apart"
 
 
-def test_a_file_that_cannot_be_read_leaves_the_work_as_it_was(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_leaves_the_work_as_it_was(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Discard
+    )  # and is kept all the same
     drag(qtbot, window, LIPS, 80, -4.0)
     take = window.session.take
     for name, content in (("a.csv", b""), ("b.csv", b"\x89PNG\r\n\x1a\n" + bytes(200)), ("c.csv", b"hello, world\n")):

@@ -31,7 +31,7 @@ def face_shown(window: MainWindow) -> np.ndarray:
 def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
     session.move_playhead(80)
-    QTest.keyClick(window, Qt.Key.Key_K)
+    QTest.keyClick(window, Qt.Key.Key_P)
     settled(qtbot, window)
     assert "Move a slider" in window.pins.hint.text() and window.pins.hint.y() < window.pins.before.y()  # read first
     QTest.keyClicks(window.pins.search, "smile")
@@ -80,7 +80,7 @@ def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtB
 
 
 def test_dropping_a_pin_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWindow) -> None:
-    QTest.keyClick(window, Qt.Key.Key_K)
+    QTest.keyClick(window, Qt.Key.Key_P)
     press(next(iter(window.pins.sliders.values())), Qt.Key.Key_End)
     qtbot.waitUntil(lambda: window.session.draft is not None, timeout=20_000)
     QTest.mouseClick(window.pins.drop_button, Qt.MouseButton.LeftButton)

@@ -11,6 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.window.main_window import MainWindow
 from engine.formats import write_take
 from engine.performance import demo
+from tests.journeys.conftest import noted
 
 Answer = QMessageBox.StandardButton
 
@@ -28,6 +29,44 @@ def test_opening_over_unsaved_edits_asks(
     monkeypatch.setattr(QMessageBox, "question", lambda *words: asked.append(words[2]) or answer)
     edited = window.session.take
     window.load(other)
+    assert asked == ["demo.csv has edits that are not saved."]  # before anything is read
+    assert (window.files.opening.path == other) is opens and window.session.take is edited
+    if opens:
+        qtbot.waitUntil(lambda: window.session.path == other, timeout=20_000)
+        assert not window.session.edited and window.keeper.left_over() == []
+    assert len(asked) == 1
+
+
+def test_edits_that_were_given_up_are_kept_where_the_file_cannot_be_read(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken, other = tmp_path / "broken.csv", tmp_path / "other.csv"
+    broken.write_text("nothing")
+    write_take(demo.performance(), other)
+    window.session.select((70, 90))
+    window.edits.close_here()
+    qtbot.waitUntil(lambda: window.session.undo.index() == 1, timeout=20_000)
+    asked: list[str] = []
+    monkeypatch.setattr(QMessageBox, "question", lambda *words: asked.append(words[2]) or Answer.Discard)
+    window.load(broken)
+    qtbot.waitUntil(window.notices.isVisible, timeout=20_000)
+    assert window.session.edited and list((tmp_path / "unsaved").glob("*")) != []
+    window.load(other)  # they were given up for another file
+    assert len(asked) == 2
+    window.session.undo.undo()
+    window.session.undo.redo()  # the same edits again
+    qtbot.waitUntil(lambda: window.session.path == other, timeout=20_000)
+
+
+def test_edits_made_while_a_file_is_read_are_asked_about(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = tmp_path / "other.csv"
+    write_take(demo.performance(), other)
+    asked: list[str] = []
+    monkeypatch.setattr(QMessageBox, "question", lambda *words: asked.append(words[2]) or Answer.Cancel)
+    window.load(other)
+    assert asked == []
+    noted(window, "wait")
     qtbot.waitUntil(lambda: bool(asked), timeout=20_000)
-    assert asked == ["demo.csv has edits that are not saved."]
-    assert (window.session.take is edited) is not opens
+    assert window.session.path == demo.BUNDLED and len(window.session.marks.notes) == 1

@@ -10,6 +10,7 @@ from PySide6.QtGui import QMouseEvent
 from app.curves.tools.base import Tool
 from app.session.commands import MarkCommand
 from engine.project import Span
+from engine.words import counted
 
 
 class MarkTool(Tool):
@@ -35,7 +36,7 @@ class MarkTool(Tool):
             return
         first, last = sorted((self._from, frame))
         self.panel.session.select((first, last + 1))
-        self.panel.show_readout(f"{last + 1 - first} frames", at)
+        self.panel.show_readout(counted(last + 1 - first, "frame"), at)
 
     def release(self, event: QMouseEvent) -> None:
         """Make it a span, one undo step; a mere click moves the playhead."""

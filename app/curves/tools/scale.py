@@ -10,6 +10,7 @@ from app.curves.brush import eased_to
 from app.curves.tools.base import Tool
 from app.session.curve_table import CURVES
 from engine.take import Array
+from engine.words import counted
 
 HANDLE_PX = 9
 JOIN_S = 0.15  # over which a stretch made longer joins what it runs into
@@ -121,7 +122,7 @@ class ScaleTool(Tool):
             new_stop = int(np.clip(round(self.panel.frame_at(at)) + 1, start + 2, len(curve)))
             join = JOIN_S * session.take.fps
             self.ask(self._lane, *scaled_in_time(curve, start, stop, new_stop, join_frames=join))
-            self.panel.show_readout(f"{stop - start} → {new_stop - start} frames", at)
+            self.panel.show_readout(f"{stop - start} → {counted(new_stop - start, 'frame')}", at)
 
     def _box(self) -> QRectF:
         session = self.panel.session

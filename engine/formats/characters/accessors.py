@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.formats.characters.raw import MAX_VERTICES
+from engine.words import counted
 
 TYPES: dict[int, np.dtype[Any]] = {
     5120: np.dtype("<i1"),
@@ -58,7 +59,7 @@ class Accessors:
         """Return (count, 3); raises `FormatError` where there are not as many as wanted."""
         count = self.count(index)
         if wanted is not None and count != wanted:
-            raise self._fault(f"has {count} vertices in its shape {what!r}, {wanted} in its mesh")
+            raise self._fault(f"has {counted(count, 'vertex', 'vertices')} in its shape {what!r}, {wanted} in its mesh")
         if count > MAX_VERTICES:
             raise self._fault(f"declares {count} vertices; a character has at most {MAX_VERTICES}")
         return self.floats(index, "VEC3", what=what)
@@ -79,7 +80,7 @@ class Accessors:
         """Return (count,) vertex numbers."""
         accessor = self._accessor(index, "SCALAR")
         if accessor["count"] > MAX_INDICES or self._type(accessor.get("componentType")).kind != "u":
-            raise self._fault(f"declares {accessor['count']} corners of faces in a form that cannot be read")
+            raise self._fault(f"declares {counted(accessor['count'], 'corner')} of faces in a form that cannot be read")
         return self._values(accessor, 1)[:, 0].astype(np.int64)
 
     def joints(self, index: Any) -> npt.NDArray[np.int64]:
@@ -122,7 +123,7 @@ class Accessors:
         count, indices, replaced = sparse.get("count"), sparse["indices"], sparse["values"]
         kind = self._type(indices.get("componentType"))
         if type(count) is not int or not 0 <= count <= len(values) or kind.kind != "u":
-            raise self._fault(f"corrects {str(count)[:20]} values of {len(values)}")
+            raise self._fault(f"corrects as many values as {str(count)[:20]} of {len(values)}")
         where = self._strided(indices, count, 1, kind)[:, 0]
         if len(where) and where.max() >= len(values):
             raise self._fault(f"corrects value {where.max()} of {len(values)}")

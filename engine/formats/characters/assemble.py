@@ -19,6 +19,7 @@ from engine.formats.characters.raw import RawCharacter
 from engine.framing import LEAST_SHARE, share_seen
 from engine.manifold.drive import parts_of
 from engine.take import SHAPE_INDEX, SHAPES, Array
+from engine.words import counted
 
 OTHER_VALUES = 4  # coordinates beside the shapes, of each vertex
 SMALLEST_MM, LARGEST_MM = 20.0, 5000.0  # height of a head alone, of a giant's body
@@ -147,7 +148,9 @@ def _notices(frame: Frame, rows: Sequence[Match], raw: RawCharacter, found: Dete
         sentences.append(f"{len(missing)} of {len(SHAPES)} shapes were not found: {shown}.")
     doubtful = [row.source for row in rows if row.shape and not row.sure]
     if doubtful:
-        sentences.append(f"{len(doubtful)} names are like a shape but not alike enough to be taken: {_few(doubtful)}.")
+        sentences.append(
+            f"{counted(len(doubtful), 'name')} like a shape but not alike enough to be taken: {_few(doubtful)}."
+        )
     guessed = [f"{row.source} for {row.shape}" for row in rows if row.sure and not row.certain]
     if guessed:
         sentences.append(f"Taken by likeness: {_few(guessed)}.")

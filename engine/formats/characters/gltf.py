@@ -18,6 +18,7 @@ from engine.formats.characters.gltf_names import target_names
 from engine.formats.characters.gltf_scene import Placed, blended, placed_meshes
 from engine.formats.characters.raw import MAX_SHAPES, RawCharacter, check
 from engine.take import Array
+from engine.words import counted
 
 TRIANGLES = 4
 UNIT, UP = "m", "y"  # of every glTF file
@@ -76,7 +77,7 @@ def _spent(left: Budget, group: list[Structure], placed: Placed, accessors: Acce
     position = group[0]["attributes"]["POSITION"]
     vertices, shapes = accessors.count(position), len(group[0].get("targets") or [])
     if vertices and not accessors.stored(position):
-        raise FormatError(f"{path.name} declares {vertices:,} vertices and holds none of them.")
+        raise FormatError(f"{path.name} declares {counted(vertices, 'vertex', 'vertices')} and holds none of them.")
     if shapes > MAX_SHAPES:
         raise FormatError(f"{path.name} has {shapes} shapes: more than can be held.")
     beside = VERTEX_VALUES if placed.bones is None else BONE_VALUES

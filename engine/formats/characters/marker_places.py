@@ -18,6 +18,7 @@ from engine.formats.characters.placing import place_rest
 from engine.manifold.pose import fit_similarity
 from engine.spacetime.layout import MARKERS, standard
 from engine.take import Array, Mask
+from engine.words import counted
 
 Indices = npt.NDArray[np.int64]
 FEWEST_BY_PLACE = 8  # markers whose places alone tell a face
@@ -133,7 +134,7 @@ def match_markers(points: Array, names: Sequence[str]) -> MarkerTable:
     rows: Indices = np.flatnonzero(seen)
     if len(rows) < FEWEST_BY_PLACE:
         raise EditError(
-            f"Only {len(known)} of the {len(names)} markers are called like a landmark, too few to find the others.",
+            f"Only {len(known)} of the {counted(len(names), 'marker')} called like a landmark, too few to find the others.",
             "Name a landmark file that says which vertex carries which marker.",
         )
     apart = float(np.linalg.norm(rest[MARKERS.index("lid_upper_left")] - rest[MARKERS.index("lid_upper_right")]))

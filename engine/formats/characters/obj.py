@@ -13,6 +13,7 @@ from engine.formats.characters.names import match_names, plain
 from engine.formats.characters.raw import MAX_SHAPES, MAX_VERTICES, RawCharacter, check
 from engine.formats.content import content_of, unread
 from engine.take import Array
+from engine.words import counted
 
 MAX_BYTES = 512 << 20
 LINES_PER_NODE = 100  # ten million lines in all: what a head of two million vertices has
@@ -37,7 +38,8 @@ def read(folder: Path) -> RawCharacter:
         if path != neutral_path:
             posed, _ = read_obj(path, with_faces=False)
             if len(posed) != len(vertices):
-                raise FormatError(f"{path.name} has {len(posed)} vertices, {neutral_path.name} has {len(vertices)}.")
+                count = counted(len(posed), "vertex", "vertices")
+                raise FormatError(f"{path.name} has {count}, {neutral_path.name} has {len(vertices)}.")
             shapes[path.stem] = (posed - vertices).astype(np.float32)
     return check(RawCharacter(folder.name, vertices, faces, shapes))
 

@@ -14,6 +14,7 @@ from engine.manifold.drive import parts_of
 from engine.manifold.pose import fit_similarity
 from engine.spacetime.align import check_points
 from engine.take import Array
+from engine.words import counted
 
 FEWEST = 4
 
@@ -38,7 +39,7 @@ def place_rest(points: Array, names: Sequence[str], character: Character, given:
     placed = [name for name in names if name in given]
     if len(placed) < FEWEST:
         raise EditError(
-            f"{len(placed)} markers were placed by hand; the others follow from four.",
+            f"{counted(len(placed), 'marker')} placed by hand; the others follow from four.",
             "Place some far apart: a brow, the tip of the nose, a mouth corner, the chin.",
         )
     rows = [names.index(name) for name in placed]

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.take import Array
+from engine.words import counted
 
 MAX_VERTICES = 2_000_000
 MAX_SHAPES = 512
@@ -51,7 +52,9 @@ def check(raw: RawCharacter) -> RawCharacter:
         bad = int(np.argwhere(~np.isfinite(raw.vertices))[0, 0])
         raise FormatError(f"{raw.name} has a vertex that is not at a finite place: number {bad}.")
     if raw.triangles.min() < 0 or raw.triangles.max() >= count:
-        raise FormatError(f"{raw.name} has a face that names vertex {raw.triangles.max()}; it has {count} vertices.")
+        raise FormatError(
+            f"{raw.name} has a face that names vertex {raw.triangles.max()}; it has {counted(count, 'vertex', 'vertices')}."
+        )
     if np.abs(raw.vertices).max() > FARTHEST:
         raise FormatError(f"{raw.name} has a vertex further away than a head can be, in any unit.")
     if np.ptp(raw.vertices, axis=0).max() <= 0:
@@ -59,7 +62,7 @@ def check(raw: RawCharacter) -> RawCharacter:
     for name, delta in raw.shapes.items():
         if delta.shape != raw.vertices.shape:
             raise FormatError(
-                f"{raw.name} has {len(delta)} vertices in its shape {name!r}, {count} in its neutral face."
+                f"{raw.name} has {counted(len(delta), 'vertex', 'vertices')} in its shape {name!r}, {count} in its neutral face."
             )
         if not (np.abs(delta) <= FARTHEST).all():
             raise FormatError(f"{raw.name} has a value that is not a finite number in its shape {name!r}.")

@@ -28,7 +28,7 @@ def test_flags_go_to_the_screen_or_to_a_file(tmp_path: Path, capsys: pytest.Capt
     assert (lost["kind"], lost["frame"], lost["stop"]) == ("lost", "252", "276")
     assert cli.run(["flags", DEMO, "-o", str(tmp_path / "flags.csv")]) == 0
     assert (tmp_path / "flags.csv").read_text(encoding="utf-8") == shown
-    assert "1 flags" in capsys.readouterr().out
+    assert "1 flag;" in capsys.readouterr().out
 
 
 def test_what_should_meet_is_told_by_visemes_and_by_the_original(

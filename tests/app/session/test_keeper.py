@@ -114,7 +114,7 @@ def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make:
 
     (left,) = second.left_over()
     assert (left.name, left.edits) == ("random", 5)
-    assert left.sentence.startswith("random (00:01:10), 5 edits, ")
+    assert left.sentence.startswith("random (00:00:01:10), 5 edits, ")
     second.open(opened(second._session, Wish(left.path, left_over=True)))
     again = second._session
     assert alike(session, again) and again.edited and again.path is None

@@ -43,7 +43,7 @@ def test_what_was_placed_by_hand_stays_and_draws_its_neighbours_along() -> None:
 @pytest.mark.parametrize(
     ("names", "says"),
     [
-        (("nose_tip", "chin", "mouth_left"), "3 markers were placed by hand"),
+        (("nose_tip", "chin", "mouth_left"), "3 markers placed by hand"),
         (("nose_tip", "nose_bridge", "chin", "forehead"), "plane"),
     ],
 )

@@ -1,0 +1,43 @@
+"""What an export says: what was written, and what such a file cannot hold."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from app.session import Session
+from engine.take import timecode
+from engine.words import NAME_LENGTH, counted, plain
+
+
+def export_report(session: Session, path: Path) -> tuple[str, str]:
+    """Return what was written to a file, and what of the session is not in it: all that is no curve."""
+    take = session.take
+    name = plain(path.name, longest=NAME_LENGTH)
+    length = timecode(take.duration_s, take.fps)
+    wrote = f"Wrote {name}: {counted(len(take), 'frame')} at {take.fps:g} fps, {length}."
+    missing = _beside_the_curves(session)
+    if not missing:
+        return wrote, ""
+    return wrote, f"A take's file cannot hold {_listed(missing)}: save the project to keep them."
+
+
+def _beside_the_curves(session: Session) -> list[str]:
+    """Return what there is beside the curves, in words."""
+    marks = session.marks
+    marked = sum(span.kind != "lost" for span in marks.spans)
+    counts = (
+        (len(marks.notes), "note"),
+        (len(marks.pins), "pin"),
+        (marked, "marked span"),
+        (session.undo.index(), "step to undo", "steps to undo"),
+    )
+    found = [counted(count, *words) for count, *words in counts if count]
+    found += ["the visemes"] if session.visemes is not None else []
+    words = {"audio": "the sound", "video": "the reference video"}
+    return found + [words[medium.kind] for medium in marks.media if medium.kind in words]
+
+
+def _listed(words: Sequence[str]) -> str:
+    """Return words as a sentence lists them after "cannot hold"."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"

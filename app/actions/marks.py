@@ -1,0 +1,70 @@
+"""The actions on what people put beside the curves: notes, pins and spans at the playhead."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from PySide6.QtCore import QObject, Signal
+
+from app.notes.section import NotesSection
+from app.session import Session
+from app.session.commands import MarkCommand
+from app.spans.section import SpansSection
+from engine.project import Note
+
+
+class MarkActions(QObject):
+    """Each public method without arguments is an action of the table.
+
+    Parameters
+    ----------
+    session : whose marks they are
+    notes, spans : the sections in which notes are typed and spans are chosen
+    """
+
+    failed = Signal(str, str)  # sentence, advice
+
+    def __init__(self, session: Session, notes: NotesSection, spans: SpansSection) -> None:
+        super().__init__()
+        self._session, self._notes, self._spans = session, notes, spans
+
+    def fill(self) -> None:
+        """Fill the chosen span, or the selection."""
+        self._spans.fill()
+
+    def unmark_span(self) -> None:
+        """Remove the chosen span; its frames stay as they are."""
+        if self._spans.chosen is None:
+            self.failed.emit("No span is chosen.", "Click one in the spans lane.")
+        self._spans.unmark()
+
+    def note(self) -> None:
+        """Type a note on the frame at the playhead."""
+        self._notes.begin()
+
+    def edit_note(self) -> None:
+        """Change the text of the note at the playhead."""
+        if (note := self._note_here()) is not None:
+            self._notes.begin(note)
+
+    def delete_note(self) -> None:
+        """Delete the note at the playhead."""
+        if (note := self._note_here()) is not None:
+            self._notes.delete(note)
+
+    def remove_pin(self) -> None:
+        """Remove the pin at the playhead; the pose stays as it is."""
+        session = self._session
+        rest = tuple(pin for pin in session.marks.pins if pin.frame != session.playhead)
+        if rest == session.marks.pins:
+            self.failed.emit("There is no pin on this frame.", "Right-click one in the pins lane.")
+        else:
+            session.undo.push(MarkCommand(session, replace(session.marks, pins=rest), "remove a pin"))
+
+    def _note_here(self) -> Note | None:
+        """Return the newest note on the frame at the playhead."""
+        chosen = self._notes.chosen
+        here = [note for note in self._session.marks.notes if note.frame == self._session.playhead]
+        if not here:
+            self.failed.emit("There is no note on this frame.", "Right-click one in the notes lane.")
+        return chosen if chosen in here else here[-1] if here else None
