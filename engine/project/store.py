@@ -12,7 +12,7 @@ from pathlib import Path
 
 from engine.errors import EngineError, FormatError
 from engine.formats.atomic import replacement
-from engine.formats.content import require_file
+from engine.formats.content import require_file, unread
 from engine.project import rows, schema
 from engine.project.blobs import Budget, DamagedError
 from engine.project.records import Contents, Summary
@@ -22,6 +22,8 @@ MAX_BLOB_BYTES = 2**29
 MAX_FILE_BYTES = 2**36
 BESIDE = ("-wal", "-shm", "-journal")  # what SQLite lays beside a database
 STEP_PAGES = 512  # that are copied at a time, 2 MiB
+LOG_HEADER_BYTES = 32  # of a log; its salts change whenever it begins anew
+COPIES = 20  # that are tried of a project that another program is writing
 
 Report = Callable[[float], None]  # the share that is done, 0 to 1; an `EngineError` raised by it stops the work
 
@@ -43,15 +45,17 @@ class Project:
         self._database = database
 
     @classmethod
-    def open(cls, path: Path) -> Project:
-        """Open a project; one that cannot be written is read, and refuses `put`.
+    def open(cls, path: Path, *, read_only: bool = False) -> Project:
+        """Open a project; one that cannot be written, or shall not be, is read without a trace and refuses `put`.
 
-        Raises `FormatError` for a file that is damaged or no project, `InUseError` for one that is open elsewhere.
+        Reading works beside another program that has the project open, and gives what is safe there. Raises
+        `FormatError` for a file that is damaged or no project, and, unless it is only read, `InUseError` for one that
+        is open elsewhere.
         """
         require_file(path, at_most=MAX_FILE_BYTES)
-        if not (os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)):
+        if read_only or not (os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)):
             with _copied(path) as copy, closing(_connect(copy, path.name)) as database:
-                return cls(path, _read(database, path), None)
+                return cls(path, _read(database, copy), None)
         database = _connect(path, path.name)
         try:
             contents = _read(database, path)
@@ -259,15 +263,43 @@ def _clear_beside(path: Path) -> None:
 
 @contextmanager
 def _copied(path: Path) -> Iterator[Path]:
-    """Give a copy in a folder that can be written, with the steps that only the log has."""
+    """Give a copy in a folder that can be written, with the steps that only the log has.
+
+    SQLite's own way to read beside a writer (mode=ro) makes files beside the database, which a folder that cannot be
+    written refuses; and migrating an old version must not touch the file that was named.
+    """
     with tempfile.TemporaryDirectory(prefix="retake") as folder:
         copy = Path(folder) / path.name
         try:
-            shutil.copyfile(path, copy)
-            log = path.with_name(f"{path.name}-wal")
-            if log.is_file():
-                shutil.copyfile(log, copy.with_name(log.name))
+            _copy_unchanged(path.resolve(), copy)
         except OSError as error:
-            reason = (error.strerror or "unknown reason").lower()
-            raise FormatError(f"{path.name} could not be read: {reason}.") from error
+            raise unread(path, error) from error
         yield copy
+
+
+def _copy_unchanged(path: Path, copy: Path) -> None:
+    """Copy a project and its log, again where another program moved steps from the log to the file meanwhile.
+
+    Steps that are only added to the log do no harm: SQLite reads it up to its last whole step.
+    """
+    for _ in range(COPIES):
+        log = path.with_name(f"{path.name}-wal")
+        before = _state_of(path, log)
+        shutil.copyfile(path, copy)
+        if before[1]:
+            shutil.copyfile(log, copy.with_name(f"{copy.name}-wal"))
+        if _state_of(path, log) == before:
+            return
+        copy.with_name(f"{copy.name}-wal").unlink(missing_ok=True)
+    raise InUseError(f"{path.name} is being written by another Retake.", "Try again in a moment.")
+
+
+def _state_of(path: Path, log: Path) -> tuple[tuple[int, int, int], bytes]:
+    """Return what changes whenever a database file is written, or its log begun anew."""
+    found = path.stat()
+    try:
+        with log.open("rb") as file:
+            salts = file.read(LOG_HEADER_BYTES)
+    except FileNotFoundError:
+        salts = b""
+    return (found.st_ino, found.st_size, found.st_mtime_ns), salts

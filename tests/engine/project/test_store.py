@@ -273,3 +273,38 @@ def test_a_project_that_is_open_is_left_alone_by_others(contents: Contents, tmp_
         project.peek(path)
     project.delete(path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_project_is_read_beside_the_program_that_has_it_open_and_left_as_it_was(
+    contents: Contents, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.retake"
+    alive = project.create(path, contents)
+    alive.put(replace(contents, position=1))
+    before = {entry.name: entry.read_bytes() for entry in tmp_path.iterdir()}
+    opened = Project.open(path, read_only=True)
+    assert opened.read_only and opened.contents.position == 1
+    with pytest.raises(EngineError, match="cannot be written"):
+        opened.put(replace(opened.contents, position=0))
+    assert {entry.name: entry.read_bytes() for entry in tmp_path.iterdir()} == before
+    alive.put(contents)
+    alive.close()
+    assert same(reopened(path), contents)
+
+
+def test_a_project_that_is_written_while_it_is_read_is_read_whole(
+    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, copied = tmp_path / "a.retake", shutil.copyfile
+    alive = project.create(path, contents)
+    turns = iter(range(3))
+
+    def written_meanwhile(source: Path, target: Path) -> None:
+        copied(source, target)
+        if str(source).endswith(".retake") and (turn := next(turns, None)) is not None:
+            alive.put(replace(alive.contents, position=turn))
+            alive._database.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
+
+    monkeypatch.setattr("engine.project.store.shutil.copyfile", written_meanwhile)
+    assert Project.open(path, read_only=True).contents.position == 2
+    alive.close()
