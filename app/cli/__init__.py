@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from app.cli import blind, character, clean, fill, flags, smooth, spacetime, tables, takes, training
+from app.cli.outputs import protect_inputs
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 
@@ -27,7 +28,7 @@ def build() -> typer.Typer:
     app.callback()(_start)
     for family in FAMILIES:
         family.register(app)
-    return app
+    return protect_inputs(app)
 
 
 def _tell_version(wanted: bool) -> None:
