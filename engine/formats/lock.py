@@ -37,6 +37,7 @@ class FileLock:
     def __init__(self, path: Path) -> None:
         """Take the lock of a file; raises `InUseError` where another has it, `OSError` where none can be made."""
         self.path = path
+        os.stat(path.parent / ".")  # a folder that is not there would be made
         self._lease = SoftFileLease(_beside(path), timeout=0, thread_local=False, lease_duration=LEASE_S)
         try:
             self._lease.acquire()

@@ -17,7 +17,7 @@ START_FIELD = 19  # of /proc/PID/stat, counted behind the program's name
 
 def owner_mark() -> str:
     """Return a text for the names of this program's temporary files: computer, its boot, process, that one's start."""
-    return f"{_computer()}-{_boot()}-{os.getpid()}-{_began(os.getpid()) or 0}"
+    return f"{_computer()}-{boot_mark()}-{os.getpid()}-{_began(os.getpid()) or 0}"
 
 
 def owner_runs(mark: str) -> bool | None:
@@ -25,7 +25,7 @@ def owner_runs(mark: str) -> bool | None:
     found = MARK.fullmatch(mark)
     if found is None or found[1] != _computer():
         return None
-    if found[2] != _boot():
+    if found[2] != boot_mark():
         return False
     pid, began = int(found[3]), int(found[4])
     return _exists(pid) and _began(pid) in (began, None)
@@ -42,7 +42,8 @@ def _computer() -> str:
 
 
 @cache
-def _boot() -> str:
+def boot_mark() -> str:
+    """Return a text that changes when the computer starts anew; the same one always where that cannot be known."""
     with suppress(OSError):
         return _digits(Path("/proc/sys/kernel/random/boot_id").read_text())
     return _digits("")

@@ -1,5 +1,7 @@
 """The `.retake` file: a performance, all that was done to it, and what people noted beside it, in one SQLite database."""
 
+from engine.formats.lock import InUseError
+from engine.project.claim import DisplacedError
 from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (
     MARK,
@@ -16,7 +18,7 @@ from engine.project.records import (
     marks_of,
 )
 from engine.project.replaying import Replayed, replay
-from engine.project.store import ENDING, InUseError, Project, create, delete, peek
+from engine.project.store import ENDING, Project, create, delete, peek, recover
 from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
 __all__ = [
@@ -24,6 +26,7 @@ __all__ = [
     "MARK",
     "VISEMES",
     "Contents",
+    "DisplacedError",
     "Edit",
     "Found",
     "InUseError",
@@ -46,6 +49,7 @@ __all__ = [
     "name_of",
     "peek",
     "placed",
+    "recover",
     "replay",
     "viseme_edit",
 ]

@@ -142,10 +142,12 @@ def test_what_cannot_be_written_can_be_read_with_the_steps_that_only_its_log_has
 
 
 def left_by_a_kill(contents: Contents, folder: Path) -> Path:
-    """Make what a killed program leaves: a project whose last step only the log has."""
+    """Make what a kill of an earlier version left: a project whose last step only the log has."""
     elsewhere = folder.parent / f"{folder.name}-alive"
     elsewhere.mkdir()
     alive = project.create(elsewhere / "old.retake", contents)
+    alive._database.execute("PRAGMA journal_mode = WAL").fetchone()
+    alive._claim.note()
     alive.put(replace(contents, position=1))
     for name in ("old.retake", "old.retake-wal"):
         shutil.copyfile(elsewhere / name, folder / name)
@@ -303,8 +305,7 @@ def test_a_project_that_is_written_while_it_is_read_is_read_whole(
         copied(source, target)
         if str(source).endswith(".retake") and (turn := next(turns, None)) is not None:
             alive.put(replace(alive.contents, position=turn))
-            alive._database.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
 
-    monkeypatch.setattr("engine.project.store.shutil.copyfile", written_meanwhile)
+    monkeypatch.setattr("engine.project.database.shutil.copyfile", written_meanwhile)
     assert Project.open(path, read_only=True).contents.position == 2
     alive.close()
