@@ -3,55 +3,25 @@
 from __future__ import annotations
 
 import logging
-import os
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
-from datetime import datetime
 from pathlib import Path
 
-import platformdirs
-from PySide6.QtCore import QCoreApplication, QEvent, QObject, Signal
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
 
 from app.background import LatestWins
+from app.session.left_over import LeftOver, new_path, unsaved_folder, unsaved_work
 from app.session.opening import Opened
 from app.session.session import Change, Session
-from app.settings import NAME
 from engine import project
 from engine.errors import EngineError
-from engine.formats import read_take
-from engine.project import Contents, Project
-from engine.take import timecode
+from engine.project import Contents, DisplacedError, Project
 
 log = logging.getLogger(__name__)
-STALE_S = 86_400.0  # a file that was being made this long ago never will be
-RECORDINGS = "*.partial*.csv"
-ABANDONED_S = 5.0  # a recording is touched every second
 PATIENCE_S = 0.3  # a wait that nobody notices when a take is closed
-
-
-def unsaved_folder() -> Path:
-    """Return the folder for unsaved work."""
-    return Path(platformdirs.user_data_dir(NAME, appauthor=False)) / "unsaved"
-
-
-@dataclass(frozen=True)
-class LeftOver:
-    """Unsaved work that a program which ended early left behind."""
-
-    path: Path
-    name: str
-    edits: int
-    changed: datetime
-    length: str
-
-    @property
-    def sentence(self) -> str:
-        """What to call it in a list."""
-        steps = "1 edit" if self.edits == 1 else f"{self.edits} edits"
-        return f"{self.name} ({self.length}), {steps}, {self.changed.astimezone():%d %b %Y %H:%M}"
+LOOK_MS = 3000  # between looks whether the project is still the one that was opened
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +39,11 @@ class _Saving:
     path: Path
 
 
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """A wish to see whether the project is still the one that was opened."""
+
+
 @contextmanager
 def _as_unsaved_work(path: Path) -> Iterator[None]:
     """Let an error speak of unsaved work: the name of its file says nothing to the user."""
@@ -82,7 +57,8 @@ class Keeper(QObject):
     """Commits each change of a session's undo stack and marks, and saves projects, on a thread of its own.
 
     Where a step cannot be written the work stays in memory, and the next step brings all that is missing. While a
-    project is being copied, the steps made meanwhile go to the file that is copied, and with it to the copy.
+    project is being copied, the steps made meanwhile go to the file that is copied, and with it to the copy. A project
+    that somebody replaced or deleted is let go of as it is, and all of the work goes on as unsaved work.
 
     Parameters
     ----------
@@ -96,6 +72,7 @@ class Keeper(QObject):
     saved = Signal(object)  # the path of a project that was just saved
     progress = Signal(float)  # the share of the save that is done, from the keeper's thread
     saving_changed = Signal()
+    _displaced = Signal(str, str)  # sentence, advice; from the keeper's thread
 
     def __init__(self, session: Session, folder: Path | None = None) -> None:
         super().__init__()
@@ -115,6 +92,10 @@ class Keeper(QObject):
         self._work.rested.connect(self._go_on)
         session.undo.indexChanged.connect(self._keep)
         session.changed.connect(self._on_change)
+        self._displaced.connect(self._on_displaced)
+        self._looks = QTimer(self, interval=LOOK_MS)
+        self._looks.timeout.connect(self._look)
+        self._looks.start()
 
     @property
     def path(self) -> Path | None:
@@ -190,6 +171,7 @@ class Keeper(QObject):
         """Finish writing and end the thread; unsaved work that was not forgotten is offered at the next start."""
         self._session.undo.indexChanged.disconnect(self._keep)
         self._session.changed.disconnect(self._on_change)
+        self._looks.stop()
         self._detach(delete=False)
         self._work.stop()
 
@@ -197,18 +179,7 @@ class Keeper(QObject):
 
     def left_over(self) -> list[LeftOver]:
         """Return the unsaved work of programs that run no more, newest first."""
-        self._sweep()
-        self._take_in_recordings()
-        found = []
-        for path in self.folder.glob(f"*{project.ENDING}"):
-            try:
-                summary = project.peek(path)
-            except (EngineError, OSError) as error:  # open elsewhere, or damaged: it is left where it is
-                log.info("%s is not offered: %s", path.name, error)
-                continue
-            length = timecode(summary.frames / summary.fps, summary.fps)
-            found.append(LeftOver(path, summary.name, summary.edits, summary.changed, length))
-        return sorted(found, key=lambda entry: entry.changed, reverse=True)
+        return unsaved_work(self.folder)
 
     def discard(self, left: LeftOver) -> None:
         """Remove unsaved work for good; raises `EngineError` when another program has taken it."""
@@ -238,27 +209,58 @@ class Keeper(QObject):
         self._newest = contents
         self._work.submit(contents)
 
-    def _write(self, wanted: Contents | _Saving) -> Project:
+    def _look(self) -> None:
+        if self._kept is not None and self._work.idle:
+            self._work.submit(_Look(), "look")
+
+    def _write(self, wanted: Contents | _Saving | _Look) -> Project | None:
         """Bring the file to these contents, or save it elsewhere; runs on the keeper's thread."""
         with self._lock:
             if isinstance(wanted, _Saving):
                 return self._save(wanted.path)
+            contents = self._newest if isinstance(wanted, _Look) else wanted
             if self._kept is None:
-                path = self._new_path()
-                with _as_unsaved_work(path):
-                    self._kept = _Kept(project.create(path, wanted), saved=False)
-            elif wanted is not self._kept.project.contents:  # a save may have brought them already
-                with nullcontext() if self._kept.saved else _as_unsaved_work(self._kept.project.path):
-                    self._kept.project.put(wanted)
+                return None if isinstance(wanted, _Look) else self._keep_unsaved(contents)
+            with nullcontext() if self._kept.saved else _as_unsaved_work(self._kept.project.path):
+                try:
+                    if isinstance(wanted, _Look):
+                        self._kept.project.check()
+                    elif contents is not self._kept.project.contents:  # a save may have brought them already
+                        self._kept.project.put(contents)
+                except DisplacedError as error:
+                    self._go_on_unsaved(contents, error)
             return self._kept.project
 
-    def _written(self, wanted: Contents | _Saving, result: Project) -> None:
+    def _keep_unsaved(self, contents: Contents) -> Project:
+        """Let the work go to a new file of unsaved work; what was kept in before is let go of, as it is."""
+        before, path = self._kept, new_path(self.folder)
+        with _as_unsaved_work(path):
+            made = project.create(path, contents)
+        self._kept = _Kept(made, saved=False)
+        if before is not None:
+            before.project.close()
+        return made
+
+    def _go_on_unsaved(self, contents: Contents, error: DisplacedError) -> None:
+        """Keep all of the work elsewhere: the file that it went to is no more its own."""
+        kept = self._project
+        same = kept is not None and contents.original is kept.contents.original
+        self._keep_unsaved(contents if same or kept is None else kept.contents)
+        self._displaced.emit(error.sentence, error.advice)
+
+    def _on_displaced(self, sentence: str, advice: str) -> None:
+        self._session.undo.resetClean()
+        self.failed.emit(sentence, advice)
+
+    def _written(self, wanted: Contents | _Saving | _Look, result: Project | None) -> None:
+        if isinstance(wanted, _Look):
+            return
         if self._told:
             self.mended.emit(self._told)
             self._told = ""
-        if isinstance(wanted, _Saving):
+        if isinstance(wanted, _Saving) and result is not None:
             self._arrived(wanted, result)
-        else:
+        elif isinstance(wanted, Contents):
             self._show_clean(wanted)
             self.kept.emit(wanted)
 
@@ -276,7 +278,7 @@ class Keeper(QObject):
         if self.path and latest and now.original is safe.original:
             self._session.undo.setClean()
 
-    def _refused(self, wanted: Contents | _Saving, sentence: str, advice: str) -> None:
+    def _refused(self, wanted: Contents | _Saving | _Look, sentence: str, advice: str) -> None:
         asked_for = isinstance(wanted, _Saving)
         if asked_for:
             self._afterwards.clear()
@@ -306,6 +308,8 @@ class Keeper(QObject):
             self._opening = False
         if not opened.project.read_only:
             self._kept = _Kept(opened.project, saved)
+            self._newest = opened.project.contents
+            self._secure(self._kept)
 
     def _detach(self, *, delete: bool) -> None:
         """Go on without a file; unsaved work is removed if it is to be deleted, a project of the user's never is."""
@@ -325,17 +329,29 @@ class Keeper(QObject):
                 log.exception("%s was not removed", old.path)
 
     def _save(self, path: Path) -> Project:
-        before, saved = self._kept, self._copy(path)
+        saved = self._copy(path)
+        before = self._kept
         self._kept = _Kept(saved, saved=True)
+        self._secure(self._kept)
         if before is not None and before.project is not saved:
             self._let_go(before.project, delete=not before.saved)
         return saved
+
+    def _secure(self, kept: _Kept) -> None:
+        """Let a project of the user's be found again even if somebody replaces it just before a kill."""
+        if kept.saved:
+            kept.project.keep_spare(self.folder)
 
     def _copy(self, path: Path) -> Project:
         contents, old = self._newest, self._project
         if old is not None and contents.original is old.contents.original:
             try:
                 old.put(contents)
+            except DisplacedError as error:
+                stays = path.exists() and path.resolve() == old.path.resolve()  # whose it is was not known when asked
+                self._go_on_unsaved(contents, error)
+                if stays:
+                    raise
             except EngineError as error:
                 if path.exists() and path.samefile(old.path):
                     raise
@@ -361,32 +377,3 @@ class Keeper(QObject):
         except EngineError as error:
             self._waits = newest  # once is enough: each attempt lets the copy begin anew
             log.warning("a step waits for the save to end: %s", error)
-
-    def _new_path(self) -> Path:
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            reason = (error.strerror or "unknown reason").lower()
-            raise EngineError(
-                f"Unsaved work cannot be kept in {self.folder}: {reason}.", "Save it, so that nothing can be lost."
-            ) from error
-        return self.folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}-{time.monotonic_ns()}{project.ENDING}"
-
-    def _take_in_recordings(self) -> None:
-        """Make unsaved work of live recordings that a program did not come to end; one still being made is left alone."""
-        for path in self.folder.glob(RECORDINGS):
-            try:
-                if time.time() - path.stat().st_mtime > ABANDONED_S:
-                    project.create(self._new_path(), Contents(read_take(path))).close()
-                    path.unlink()
-            except (EngineError, OSError) as error:
-                log.info("%s is not offered: %s", path.name, error)
-
-    def _sweep(self) -> None:
-        """Remove what a killed program was making: it never became a project."""
-        for path in self.folder.glob(".*.part"):
-            try:
-                if time.time() - path.stat().st_mtime > STALE_S:
-                    path.unlink()
-            except OSError:
-                continue

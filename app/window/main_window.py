@@ -208,6 +208,7 @@ class MainWindow(QMainWindow):
         self.live.face.connect(self.preview.show_live)
         self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
+        self.keeper.kept.connect(lambda contents: self.live.settle(contents.original))
         self.retarget.shown.connect(self.preview.show_sides)
         self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
         self.preview.picked.connect(self.retarget.pick)

@@ -10,7 +10,7 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 from engine.errors import EngineError, FormatError
-from engine.formats.atomic import replacement, unwritten
+from engine.formats.atomic import replacement, sweep, unwritten
 from engine.formats.content import require_file
 from engine.project import rows, schema, spares
 from engine.project.blobs import Budget
@@ -170,9 +170,14 @@ def create(path: Path, contents: Contents, report: Report = lambda _: None) -> P
 
 
 def peek(path: Path) -> Summary:
-    """Return what a project is, without a trace; raises as `Project.open` does."""
+    """Return what a project is, and bring no older version up to date; raises as `Project.open` does."""
     claim = _claim_of(path)
     try:
+        if claim is not None:
+            claim.shed_foreign_journal(_whole, _rolled_back)
+            with closing(connect(claim.path, path.name)) as database, sentences(path.name):
+                if schema.check(database, path.name) == schema.VERSION:
+                    return rows.read_summary(database)
         with copied(path) as copy, closing(connect(copy, path.name)) as database, sentences(path.name):
             schema.migrate(database, schema.check(database, path.name))
             return rows.read_summary(database)
@@ -200,6 +205,7 @@ def recover(folder: Path, new_path: Callable[[], Path]) -> None:
     """
 
     def tidy(spare: Path, path: Path) -> None:
+        sweep(path.parent)
         claim = _claim_of(path) if path.parent.is_dir() else None
         try:
             displaced = spare.exists() and not (path.exists() and path.samefile(spare))
