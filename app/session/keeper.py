@@ -72,7 +72,7 @@ class Keeper(QObject):
     saved = Signal(object)  # the path of a project that was just saved
     progress = Signal(float)  # the share of the save that is done, from the keeper's thread
     saving_changed = Signal()
-    _displaced = Signal(str, str)  # sentence, advice; from the keeper's thread
+    _displaced = Signal(object)  # a DisplacedError, from the keeper's thread
 
     def __init__(self, session: Session, folder: Path | None = None) -> None:
         super().__init__()
@@ -246,11 +246,12 @@ class Keeper(QObject):
         kept = self._project
         same = kept is not None and contents.original is kept.contents.original
         self._keep_unsaved(contents if same or kept is None else kept.contents)
-        self._displaced.emit(error.sentence, error.advice)
+        self._displaced.emit(error)
 
-    def _on_displaced(self, sentence: str, advice: str) -> None:
+    def _on_displaced(self, error: DisplacedError) -> None:
         self._session.undo.resetClean()
-        self.failed.emit(sentence, advice)
+        if self._wished is None:  # else the save tells it
+            self.failed.emit(error.sentence, error.advice)
 
     def _written(self, wanted: Contents | _Saving | _Look, result: Project | None) -> None:
         if isinstance(wanted, _Look):

@@ -16,7 +16,8 @@ from engine import project
 from engine.errors import EngineError
 from engine.formats.atomic import sweep
 from engine.formats.lock import FileLock
-from engine.live.spool import UNFINISHED, recovered
+from engine.formats.unfinished import UNFINISHED
+from engine.live.spool import recovered
 from engine.project import Contents
 from engine.take import timecode
 

@@ -14,6 +14,7 @@ from engine.formats.atomic import write_bytes
 from engine.formats.content import content_of
 from engine.formats.decimals import floats
 from engine.formats.livelink_table import table
+from engine.formats.unfinished import is_unfinished, whole_rows
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take
 
 ROTATIONS = (
@@ -194,7 +195,7 @@ def _recorded_name(shape: str, *, swapped: bool) -> str:
 
 
 def _content(path: Path) -> bytes:
-    content = content_of(path)
+    content = whole_rows(content_of(path)) if is_unfinished(path) else content_of(path)
     if not content or content.isspace():
         raise FormatError(f"{path.name} is empty.", EXPECTED)
     return content.removeprefix(b"\xef\xbb\xbf")

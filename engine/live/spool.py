@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import os
-import tempfile
 import threading
 import time
 from pathlib import Path
@@ -17,12 +16,12 @@ from engine.formats import livelink
 from engine.formats.atomic import sync_folder
 from engine.formats.content import content_of
 from engine.formats.lock import FileLock, InUseError
+from engine.formats.unfinished import whole_rows
 from engine.live.record import Recorder
 from engine.take import SHAPES, Array, Take
 
 SETTLED_S = 1.0  # no packet comes later than this behind another; rows must stand in the order of time
 SYNC_S = 1.0  # of a recording that a power cut may take
-UNFINISHED = "*.partial*.csv"  # what recordings are called until they are whole
 
 
 class Spool:
@@ -137,19 +136,15 @@ class Spool:
 def recovered(path: Path) -> Take | None:
     """Return what a recording that was cut short holds, up to its last whole row; None where no face was recorded.
 
-    A crash may leave half a row at its end, or zeros where rows had not reached the disk. Raises `FormatError` where
-    it is no recording.
+    Raises `FormatError` where it is no recording.
     """
     content = content_of(path)
-    whole = content.partition(b"\0")[0].rpartition(b"\n")[0]
-    if not any(line.count(b",") > 1 for line in whole.split(b"\n")[1:]):
-        if content and not content.startswith(livelink.header()[: len(content)]):
-            raise FormatError(f"{path.name} is no recording.")
-        return None
-    with tempfile.TemporaryDirectory(prefix="retake") as folder:
-        copy = Path(folder) / path.name
-        copy.write_bytes(whole + b"\n")
-        return livelink.read(copy)
+    rows = whole_rows(content).split(b"\n")[1:]
+    if any(row.count(b",") > 1 for row in rows):
+        return livelink.read(path)
+    if not content.startswith(livelink.header()[: len(content)]):
+        raise FormatError(f"{path.name} is no recording.")
+    return None
 
 
 def _synced(descriptor: int) -> None:
