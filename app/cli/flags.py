@@ -64,7 +64,7 @@ def _seen(path: Path, original: Take | None, lane: VisemeLane | None) -> Seen:
 
     if path.suffix.lower() != ENDING:
         return seen_of(read_take(path), original, visemes=lane)
-    project = Project.open(path)
+    project = Project.open(path, read_only=True)
     try:
         state = replay(project.contents)
         return seen_of(state.take, original or project.contents.original, state.asked, lane or state.visemes)

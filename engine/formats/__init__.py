@@ -42,7 +42,7 @@ def read_take(path: Path, report: Callable[[float], None] | None = None) -> Take
     if path.suffix.lower() == ".retake":
         from engine.project import Project, replay  # here, since projects themselves keep what formats read
 
-        project = Project.open(path)
+        project = Project.open(path, read_only=True)
         try:
             return replay(project.contents).take
         finally:
