@@ -12,6 +12,7 @@ from pathlib import Path
 
 from engine.errors import EngineError
 from engine.formats import inputs
+from engine.formats.lock import drop_abandoned
 from engine.formats.owner import owner_mark, owner_runs
 
 PART = ".part"
@@ -81,13 +82,14 @@ def unwritten(path: Path, error: Exception) -> EngineError:
 
 
 def sweep(folder: Path) -> None:
-    """Remove the temporary files of programs that were killed; those of running ones stay."""
+    """Remove the temporary files and locks of programs that were killed; those of running ones stay."""
     with suppress(OSError), os.scandir(folder) as entries:
-        for name in [entry.name for entry in entries if entry.name.startswith(".") and entry.name.endswith(PART)]:
+        for name in [entry.name for entry in entries if entry.name.startswith(".")]:
             mark = name.removesuffix(PART).rpartition(".")[0].rpartition(".")[2]
-            if owner_runs(mark) is False:
+            if name.endswith(PART) and owner_runs(mark) is False:
                 with suppress(OSError):
                     os.unlink(folder / name)
+            drop_abandoned(folder / name)
 
 
 def sync_folder(folder: Path) -> None:

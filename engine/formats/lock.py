@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import socket
 import time
 from contextlib import suppress
@@ -19,6 +20,7 @@ MAX_NAME_BYTES = 255  # of a file system
 HASH_DIGITS = 16
 MOMENT_S = 2.0  # in which a lock that was made has its owner's name in it
 NOBODY = ""
+OWN = re.compile(r"\..*(\.retake|\.partial\d*\.csv)\.lock|\.[0-9a-f]{16}\.lock", re.DOTALL)  # the locks' names
 
 
 class InUseError(EngineError):
@@ -96,6 +98,10 @@ def _beside(path: Path) -> Path:
     return path.with_name(name)
 
 
-def is_lock(path: Path) -> bool:
-    """Return whether a file is the lock of another."""
-    return path.name.startswith(".") and path.name.endswith(".lock")
+def drop_abandoned(path: Path) -> None:
+    """Remove a file of this module's kind whose owner, on this computer, runs no more; any other stays."""
+    if OWN.fullmatch(path.name):
+        lease = SoftFileLease(path, timeout=0, thread_local=False, lease_duration=LEASE_S)
+        with suppress(Timeout, OSError):
+            lease.acquire()
+            lease.release(force=True)

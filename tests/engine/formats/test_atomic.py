@@ -15,6 +15,7 @@ from engine.errors import EngineError
 from engine.formats import inputs
 from engine.formats.atomic import PART, replacement, sweep, write_bytes
 from engine.formats.content import content_of
+from engine.formats.lock import FileLock
 from engine.formats.owner import MARK, owner_mark, owner_runs
 
 
@@ -113,6 +114,19 @@ def test_what_a_kill_leaves_goes_with_the_next_write_and_what_runs_stays(tmp_pat
         alive.join()
     sweep(tmp_path)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted(["c.csv", foreign.name])
+
+
+def test_a_lock_that_a_kill_left_goes_with_the_next_write_and_others_stay(tmp_path: Path) -> None:
+    code = "import os, sys; from pathlib import Path; from engine.formats.lock import FileLock; "
+    code += "locks = [FileLock(Path(sys.argv[1]) / name) for name in ('a.retake', 'b.partial2.csv')]; os._exit(0)"
+    subprocess.run([sys.executable, "-c", code, str(tmp_path)], check=True)
+    held = FileLock(tmp_path / "held.retake")
+    (tmp_path / ".somebody.lock").write_text("else's")
+    assert len(list(tmp_path.iterdir())) == 4
+    write_bytes(tmp_path / "c.csv", [b"x"])
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == [".held.retake.lock", ".somebody.lock", "c.csv"]
+    assert held.held
+    held.release()
 
 
 def test_an_owner_is_known_by_its_process_and_not_by_a_clock(tmp_path: Path) -> None:
