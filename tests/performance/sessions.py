@@ -127,7 +127,7 @@ def next_start(folder: Path, content_of: Callable[[Path], str]) -> list[str]:
         except EngineError as error:
             raise AssertionError(f"{path.name} does not open: {error}") from error
     stray = [
-        path.relative_to(folder)
+        (str(path.relative_to(folder)), path.read_bytes()[:60])
         for path in folder.rglob("*")
         if path.is_file() and (path.name.startswith(".") or path.suffix not in KINDS_LEFT or ".partial" in path.name)
     ]
