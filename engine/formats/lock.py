@@ -99,9 +99,18 @@ def _beside(path: Path) -> Path:
 
 
 def drop_abandoned(path: Path) -> None:
-    """Remove a file of this module's kind whose owner, on this computer, runs no more; any other stays."""
-    if OWN.fullmatch(path.name):
-        lease = SoftFileLease(path, timeout=0, thread_local=False, lease_duration=LEASE_S)
-        with suppress(Timeout, OSError):
+    """Remove a lock whose owner, on this computer, runs no more; any other stays.
+
+    One that a kill left before its owner's name was in it is known by staying so for a moment.
+    """
+    if not OWN.fullmatch(path.name):
+        return
+    lease = SoftFileLease(path, timeout=0, thread_local=False, lease_duration=LEASE_S)
+    with suppress(Timeout, OSError):
+        if not (found := path.stat()).st_size:
+            time.sleep(MOMENT_S)
+            if path.stat() == found:
+                lease.force_break()
+        else:
             lease.acquire()
             lease.release(force=True)

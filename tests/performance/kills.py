@@ -260,11 +260,11 @@ def content_of(path: Path) -> str:
         opened.close()
 
 
-def main(times: int, kinds: list[str]) -> None:
-    """Kill so many sessions, each kind in turn, and say what came of it."""
+def main(seeds: range, kinds: list[str]) -> None:
+    """Kill a session for each seed, each kind in turn, and say what came of it."""
     reports, kinds = Counter[str](), kinds or list(SESSIONS)
     losses = []
-    for seed in range(times):
+    for done, seed in enumerate(seeds, 1):
         kind = kinds[seed % len(kinds)]
         with tempfile.TemporaryDirectory() as folder:
             try:
@@ -272,14 +272,14 @@ def main(times: int, kinds: list[str]) -> None:
             except AssertionError as error:
                 losses.append(f"{kind} {seed}: {error}")
                 print(losses[-1], flush=True)
-        if seed % 50 == 49:
-            print(f"{seed + 1} kills, reports {dict(reports)}, {len(losses)} losses or stray files", flush=True)
-    print(
-        f"{times} kills, {sum(reports.values())} finished steps reported before them, {len(losses)} losses or stray files"
-    )
+        if done % 50 == 0:
+            print(f"{done} kills, reports {dict(reports)}, {len(losses)} losses or stray files", flush=True)
+    reported = sum(reports.values())
+    print(f"{len(seeds)} kills, {reported} finished steps reported before them, {len(losses)} losses or stray files")
 
 
 if __name__ == "__main__":
     from tests.performance.kills import main  # under its own name, as the sessions' processes know it
 
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 200, sys.argv[2:])
+    first, _, stop = (sys.argv[1] if len(sys.argv) > 1 else "0:200").rpartition(":")
+    main(range(int(first or 0), int(stop)), sys.argv[2:])
