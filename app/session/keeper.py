@@ -95,7 +95,6 @@ class Keeper(QObject):
         self._displaced.connect(self._on_displaced)
         self._looks = QTimer(self, interval=LOOK_MS)
         self._looks.timeout.connect(self._look)
-        self._looks.start()
 
     @property
     def path(self) -> Path | None:
@@ -171,7 +170,6 @@ class Keeper(QObject):
         """Finish writing and end the thread; unsaved work that was not forgotten is offered at the next start."""
         self._session.undo.indexChanged.disconnect(self._keep)
         self._session.changed.disconnect(self._on_change)
-        self._looks.stop()
         self._detach(delete=False)
         self._work.stop()
 
@@ -270,6 +268,7 @@ class Keeper(QObject):
             self._end_saving()
         if result is self._project:  # else another take was opened meanwhile
             self._session.path = result.path
+            self._looks.start()
             self._show_clean(result.contents)
             self.saved.emit(result.path)
 
@@ -311,9 +310,11 @@ class Keeper(QObject):
             self._kept = _Kept(opened.project, saved)
             self._newest = opened.project.contents
             self._secure(self._kept)
+            self._looks.start()
 
     def _detach(self, *, delete: bool) -> None:
         """Go on without a file; unsaved work is removed if it is to be deleted, a project of the user's never is."""
+        self._looks.stop()
         self._work.finish()
         with self._lock:
             before, self._kept = self._kept, None

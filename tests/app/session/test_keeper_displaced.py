@@ -139,16 +139,14 @@ def _edit_and_wait(folder: Path, path: Path, ready: Event) -> None:
 
     application = QCoreApplication([])
     keeper = Keeper(Session(Take(weights=np.zeros((50, len(SHAPES))), fps=30.0, name="killed")), folder)
-    done: list[object] = []
-    keeper.saved.connect(done.append)
-    keeper.kept.connect(done.append)
+    safe: list[Contents] = []
+    keeper.kept.connect(safe.append)
     push(keeper._session, 1)
     keeper.save_as(path)
-    while len(done) < 1 or keeper.path is None:
+    while keeper.path is None:
         application.processEvents()
-    done.clear()
     push(keeper._session, 2)
-    while not done:
+    while not safe or len(safe[-1].edits) < 2:
         application.processEvents()
     ready.set()
     multiprocessing.Event().wait()
