@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
+import subprocess
+import sys
 from collections.abc import Callable
 from multiprocessing.synchronize import Event
 from pathlib import Path
@@ -16,12 +19,14 @@ from app.session import Session
 from app.session.keeper import Keeper
 from app.session.opening import Wish, opened
 from engine import project
+from engine.formats import write_take
 from engine.live.record import Recorder
 from engine.live.spool import Spool
 from engine.live.stream import Arrival
-from engine.project import Contents, Project
+from engine.project import Contents, InUseError, Project
 from engine.take import SHAPES, Take
 from tests.app.session.test_keeper import Made, alike, kept, make, push, refused, saved
+from tests.performance import kills, sessions
 
 __all__ = ["make"]  # a fixture
 
@@ -171,3 +176,49 @@ def test_a_project_that_is_replaced_just_before_a_kill_is_offered_with_every_ste
     assert path.read_bytes() == wanted
     assert sorted(entry.name for entry in tmp_path.iterdir() if entry.is_file()) == ["a.retake"]
     assert [entry for entry in (tmp_path / "data" / "unsaved").iterdir()] == [left.path]
+
+
+@pytest.mark.parametrize("kind", ["replace", "export", "record"])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_kill_loses_nothing_that_was_reported_and_leaves_nothing_stray(seed: int, tmp_path: Path, kind: str) -> None:
+    kills.check(seed, tmp_path, kind)
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="signals of Unix")
+def test_a_suspended_program_keeps_what_it_has_and_goes_on(make: Made, tmp_path: Path) -> None:
+    process, told = kills.start(kills.SESSIONS["record"], tmp_path, 1)
+    try:
+        messages = [told.recv() for _ in range(12)]
+        os.kill(process.pid, signal.SIGSTOP)
+        for path in tmp_path.iterdir():
+            os.utime(path, (1.0, 1.0))  # however long it takes, and wherever the clock is set
+        growing = sorted(tmp_path.glob("*.partial*.csv"))
+        offered = make(folder=tmp_path).left_over()
+        assert sorted(tmp_path.glob("*.partial*.csv")) == growing
+        assert not any(_is_open(left.path) for left in offered)
+        os.kill(process.pid, signal.SIGCONT)
+        messages += [told.recv() for _ in range(12)]
+        messages += kills.kill(process, told)
+    finally:
+        process.kill()
+    sessions.next_start(tmp_path, kills.content_of)
+    assert sessions.recorded(tmp_path, messages) >= 24
+
+
+def _is_open(path: Path) -> bool:
+    try:
+        Project.open(path).close()
+    except InUseError:
+        return True
+    return False
+
+
+def test_opening_a_file_removes_what_a_kill_was_writing_beside_it(make: Made, tmp_path: Path) -> None:
+    code = "import os, sys; from pathlib import Path; from engine.formats.atomic import replacement; "
+    code += "made = replacement(Path(sys.argv[1])); made.__enter__(); os._exit(0)"
+    subprocess.run([sys.executable, "-c", code, str(tmp_path / "take.csv")], check=True)
+    write_take(Take(weights=np.zeros((9, len(SHAPES))), fps=24.0), beside := tmp_path / "other.csv")
+    subprocess.run([sys.executable, "-c", code, str(tmp_path / "take.csv")], check=True)
+    assert len(list(tmp_path.glob(".*.part"))) == 1
+    opened(make()._session, Wish(beside))
+    assert not list(tmp_path.glob(".*.part"))
