@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
 
 from app.background import LatestWins
+from app.session.keeping import Kept, Look, Saving, as_unsaved_work
 from app.session.left_over import LeftOver, new_path, unsaved_folder, unsaved_work
 from app.session.opening import Opened
 from app.session.session import Change, Session
@@ -22,35 +22,6 @@ from engine.project import Contents, DisplacedError, Project
 log = logging.getLogger(__name__)
 PATIENCE_S = 0.3  # a wait that nobody notices when a take is closed
 LOOK_MS = 3000  # between looks whether the project is still the one that was opened
-
-
-@dataclass(frozen=True, eq=False)
-class _Kept:
-    """The file that each step goes to, and whether it is the user's own or unsaved work."""
-
-    project: Project
-    saved: bool
-
-
-@dataclass(frozen=True, eq=False)
-class _Saving:
-    """A wish to save to a path."""
-
-    path: Path
-
-
-@dataclass(frozen=True, eq=False)
-class _Look:
-    """A wish to see whether the project is still the one that was opened."""
-
-
-@contextmanager
-def _as_unsaved_work(path: Path) -> Iterator[None]:
-    """Let an error speak of unsaved work: the name of its file says nothing to the user."""
-    try:
-        yield
-    except EngineError as error:
-        raise EngineError(error.sentence.replace(path.name, "unsaved work"), error.advice) from error
 
 
 class Keeper(QObject):
@@ -77,9 +48,9 @@ class Keeper(QObject):
     def __init__(self, session: Session, folder: Path | None = None) -> None:
         super().__init__()
         self._session, self.folder = session, folder or unsaved_folder()
-        self._kept: _Kept | None = None
+        self._kept: Kept | None = None
         self._newest = session.contents()  # what is to be written
-        self._wished: _Saving | None = None
+        self._wished: Saving | None = None
         self._stopped = False
         self._waits: Contents | None = None  # steps that could not be kept while a copy was made
         self._afterwards: list[Callable[[], None]] = []
@@ -149,7 +120,7 @@ class Keeper(QObject):
         Returns at once; `saved` or `failed` follows. Where it fails nothing is lost: neither what was at the path, nor
         the work.
         """
-        self._newest, self._wished, self._stopped = self._session.contents(), _Saving(path), False
+        self._newest, self._wished, self._stopped = self._session.contents(), Saving(path), False
         self._work.submit(self._wished, "save")
         self.saving_changed.emit()
 
@@ -209,19 +180,19 @@ class Keeper(QObject):
 
     def _look(self) -> None:
         if self._kept is not None and self._work.idle:
-            self._work.submit(_Look(), "look")
+            self._work.submit(Look(), "look")
 
-    def _write(self, wanted: Contents | _Saving | _Look) -> Project | None:
+    def _write(self, wanted: Contents | Saving | Look) -> Project | None:
         """Bring the file to these contents, or save it elsewhere; runs on the keeper's thread."""
         with self._lock:
-            if isinstance(wanted, _Saving):
+            if isinstance(wanted, Saving):
                 return self._save(wanted.path)
-            contents = self._newest if isinstance(wanted, _Look) else wanted
+            contents = self._newest if isinstance(wanted, Look) else wanted
             if self._kept is None:
-                return None if isinstance(wanted, _Look) else self._keep_unsaved(contents)
-            with nullcontext() if self._kept.saved else _as_unsaved_work(self._kept.project.path):
+                return None if isinstance(wanted, Look) else self._keep_unsaved(contents)
+            with nullcontext() if self._kept.saved else as_unsaved_work(self._kept.project.path):
                 try:
-                    if isinstance(wanted, _Look):
+                    if isinstance(wanted, Look):
                         self._kept.project.check()
                     elif contents is not self._kept.project.contents:  # a save may have brought them already
                         self._kept.project.put(contents)
@@ -232,9 +203,9 @@ class Keeper(QObject):
     def _keep_unsaved(self, contents: Contents) -> Project:
         """Let the work go to a new file of unsaved work; what was kept in before is let go of, as it is."""
         before, path = self._kept, new_path(self.folder)
-        with _as_unsaved_work(path):
+        with as_unsaved_work(path):
             made = project.create(path, contents)
-        self._kept = _Kept(made, saved=False)
+        self._kept = Kept(made, saved=False)
         if before is not None:
             before.project.close()
         return made
@@ -251,19 +222,19 @@ class Keeper(QObject):
         if self._wished is None:  # else the save tells it
             self.failed.emit(error.sentence, error.advice)
 
-    def _written(self, wanted: Contents | _Saving | _Look, result: Project | None) -> None:
-        if isinstance(wanted, _Look):
+    def _written(self, wanted: Contents | Saving | Look, result: Project | None) -> None:
+        if isinstance(wanted, Look):
             return
         if self._told:
             self.mended.emit(self._told)
             self._told = ""
-        if isinstance(wanted, _Saving) and result is not None:
+        if isinstance(wanted, Saving) and result is not None:
             self._arrived(wanted, result)
         elif isinstance(wanted, Contents):
             self._show_clean(wanted)
             self.kept.emit(wanted)
 
-    def _arrived(self, wanted: _Saving, result: Project) -> None:
+    def _arrived(self, wanted: Saving, result: Project) -> None:
         if wanted is self._wished:
             self._end_saving()
         if result is self._project:  # else another take was opened meanwhile
@@ -278,8 +249,8 @@ class Keeper(QObject):
         if self.path and latest and now.original is safe.original:
             self._session.undo.setClean()
 
-    def _refused(self, wanted: Contents | _Saving | _Look, sentence: str, advice: str) -> None:
-        asked_for = isinstance(wanted, _Saving)
+    def _refused(self, wanted: Contents | Saving | Look, sentence: str, advice: str) -> None:
+        asked_for = isinstance(wanted, Saving)
         if asked_for:
             self._afterwards.clear()
         if wanted is self._wished:
@@ -307,8 +278,7 @@ class Keeper(QObject):
         finally:
             self._opening = False
         if not opened.project.read_only:
-            self._kept = _Kept(opened.project, saved)
-            self._newest = opened.project.contents
+            self._kept = Kept(opened.project, saved)
             self._secure(self._kept)
             self._looks.start()
 
@@ -331,15 +301,14 @@ class Keeper(QObject):
                 log.exception("%s was not removed", old.path)
 
     def _save(self, path: Path) -> Project:
-        saved = self._copy(path)
-        before = self._kept
-        self._kept = _Kept(saved, saved=True)
+        saved, before = self._copy(path), self._kept  # in this order: the copy may let go of what was kept in
+        self._kept = Kept(saved, saved=True)
         self._secure(self._kept)
         if before is not None and before.project is not saved:
             self._let_go(before.project, delete=not before.saved)
         return saved
 
-    def _secure(self, kept: _Kept) -> None:
+    def _secure(self, kept: Kept) -> None:
         """Let a project of the user's be found again even if somebody replaces it just before a kill."""
         if kept.saved:
             kept.project.keep_spare(self.folder)
