@@ -79,7 +79,7 @@ class Claim:
         if not os.path.samestat(found, os.fstat(self._file)):
             raise DisplacedError(f"{name} was replaced by another program.", RESCUED)
         if not self._lock.held:
-            raise DisplacedError(f"{name} was opened elsewhere while this computer slept.", RESCUED)
+            raise DisplacedError(f"{name} was opened on another computer meanwhile.", RESCUED)
         if _state(self._file) != self._written and head_of(self._file) != self._head:
             raise DisplacedError(f"{name} was changed by another program.", RESCUED)
 

@@ -203,7 +203,7 @@ def test_who_lost_the_lock_while_asleep_writes_no_more(contents: Contents, tmp_p
     slept = project.create(path, contents)
     owned_elsewhere(tmp_path / ".a.retake.lock", "other")
     before = path.read_bytes()
-    with pytest.raises(DisplacedError, match="while this computer slept"):
+    with pytest.raises(DisplacedError, match="another computer meanwhile"):
         slept.put(replace(contents, position=1))
     slept.close()
     assert path.read_bytes() == before and (tmp_path / ".a.retake.lock").exists()
