@@ -18,14 +18,27 @@ from app.session.opening import Opened, Opening, Wish
 from app.settings import Settings
 from app.widgets.saving import ask_where, may_replace
 from engine.errors import EngineError
-from engine.formats import FORMATS, cues, write_take
+from engine.formats import FORMATS, cues, livelink_folder, write_take
 from engine.formats.atomic import sweep
+from engine.formats.importing import Imported
+from engine.formats.livelink_folder import CARD
+from engine.formats.reading import Sides
 from engine.project import ENDING
 from engine.take import Take
 
 Answer = QMessageBox.StandardButton
 ORIGINAL = "{} is the take as it was recorded."
 COPY = "What you do to it here is kept as unsaved work, until you save it under another name."
+# What a take is exported as: as it was read, or with left and right of mouth and jaw as the app or by their names.
+SIDES_WRITTEN: dict[str, Sides] = {
+    "": "automatic",
+    ", sides as the app records": "recorded",
+    ", sides as named": "named",
+}
+EXPORTS: dict[str, Sides] = {
+    f"{entry.title}{words} (*{entry.endings[0]})": sides for entry in FORMATS for words, sides in SIDES_WRITTEN.items()
+}
+ENDINGS = {kind: entry.endings[0] for entry in FORMATS for kind in EXPORTS if kind.startswith(entry.title)}
 CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 
 
@@ -49,6 +62,7 @@ class FileActions(QObject):
         super().__init__()
         self._session, self._keeper, self._media = session, keeper, media
         self.opening = Opening(session)
+        self.imported: Imported | None = None  # what the file that was opened last says of itself
         self._newest: Wish | None = None  # of those that were read
         self._reopens = False
         self.opening.done.connect(self._confirm)
@@ -96,10 +110,11 @@ class FileActions(QObject):
             opened.drop()  # while its predecessor was being saved, something else was chosen
             return
         path, left_over = opened.wish.path, opened.wish.left_over
+        self.imported = opened.imported
         if opened.project is not None:
             self._keeper.open(opened)
         else:
-            self._session.open(opened.take, path, opened.measured[0])
+            self._session.open(opened.take, opened.path, opened.measured[0])
         if not left_over:
             self._settings.remember(path)
         self.opened.emit()
@@ -110,7 +125,9 @@ class FileActions(QObject):
     def take_in(self, path: Path) -> None:
         """Open or attach a file, by its ending."""
         ending = path.suffix.lower()
-        if ending in media.ENDINGS:
+        if self._is_another_take(path):
+            self.load(path)
+        elif ending in media.ENDINGS:
             self._media.attach("audio", path)
         elif ending in media.FILM_ENDINGS:
             self._media.attach("video", path)
@@ -121,11 +138,24 @@ class FileActions(QObject):
         else:
             self.load(path)
 
+    def _is_another_take(self, path: Path) -> bool:
+        """Whether a file belongs to a take of several files that is not open."""
+        try:
+            return livelink_folder.is_one(path) and livelink_folder.table_of(path) != self._session.path
+        except EngineError:
+            return True  # opening it says what is wrong
+
     def open_take(self) -> None:
         """Choose a file to open."""
         endings = " ".join(f"*{ending}" for entry in FORMATS for ending in entry.endings)
-        kinds = f"Takes and projects ({endings} *{ENDING})"
+        kinds = f"Takes and projects ({endings} *.zip {CARD} *{ENDING})"
         name, _ = QFileDialog.getOpenFileName(self._window, "Open", "", kinds)
+        if name:
+            self.load(Path(name))
+
+    def open_folder(self) -> None:
+        """Choose the folder of a take to open, as Live Link Face hands it over."""
+        name = QFileDialog.getExistingDirectory(self._window, "Open a take folder")
         if name:
             self.load(Path(name))
 
@@ -136,18 +166,18 @@ class FileActions(QObject):
     def save_as(self) -> bool:
         """Choose a file and save the project: the original, every edit, and what can be undone."""
         suggested = self._beside(f"{Path(self._session.name).stem}{ENDING}")
-        path = ask_where(self._window, "Save the project", suggested, {ENDING: "Retake project"})
+        kinds = {f"Retake project (*{ENDING})": ENDING}
+        path, _ = ask_where(self._window, "Save the project", suggested, kinds)
         return path is not None and self._save_to(path)
 
     def export(self) -> bool:
         """Choose a file and write the edited take as other programs read it."""
         suggested = self._beside(f"{Path(self._session.name).stem}_edited.csv")
-        kinds = {entry.endings[0]: entry.title for entry in FORMATS}
-        path = ask_where(self._window, "Export the take", suggested, kinds)
+        path, kind = ask_where(self._window, "Export the take", suggested, ENDINGS)
         if path is None or (self._is_original(path) and not may_replace(self._window, ORIGINAL.format(path.name))):
             return False
         try:
-            write_take(self._session.take, path)
+            write_take(self._session.take, path, EXPORTS.get(kind, "automatic"))
         except EngineError as error:
             self.told.emit(error.sentence, error.advice)
             return False
@@ -157,10 +187,17 @@ class FileActions(QObject):
     def open_recording(self, take: Take) -> None:
         """Open what was recorded live, unless edits would be lost."""
 
+        self.open_then(take, lambda: None)
+
+    def open_then(self, take: Take, then: Callable[[], None]) -> None:
+        """Open a take that no file holds, unless edits would be lost, and go on."""
+
         def show() -> None:
+            self.imported = None
             self._session.open(take, None)
             self._keeper.keep()
             self.opened.emit()
+            then()
 
         self.when_safe(show)
 

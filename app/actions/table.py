@@ -33,6 +33,7 @@ class Action:
 
 ACTIONS: tuple[Action, ...] = (
     Action("open_take", "Open…", "File", ("Ctrl+O",), "Open", twin="retake FILE"),
+    Action("open_folder", "Open a take folder…", "File", twin="retake FOLDER"),
     Action("save", "Save project", "File", ("Ctrl+S",), "Save", twin="commands read projects and write takes"),
     Action("save_as", "Save project as…", "File", ("Ctrl+Shift+S",), twin="commands read projects and write takes"),
     Action("export", "Export take…", "File", ("Ctrl+E",), "Export", twin="retake edit -o"),
@@ -42,6 +43,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("detach_video", "Detach the reference video", "File", twin="commands play nothing"),
     Action("locate_media", "Locate missing sound or video…", "File", twin="commands play nothing"),
     Action("attach_visemes", "Attach visemes…", "File", twin="retake fill --visemes"),
+    Action("show_import", "How this take was read", "File", checkable=True, twin="retake info"),
     Action("load_character", "Show on another head…", "File", twin="retake render --character"),
     Action("quit", "Quit", "File", ("Ctrl+Q",), twin="ends the program"),
     Action("undo", "Undo", "Edit", ("Ctrl+Z",), "↶", twin="a command writes a new file; the old one stays"),
@@ -93,6 +95,13 @@ ACTIONS: tuple[Action, ...] = (
     Action("unplace_marker", "Remove the chosen marker", "Retarget", twin="retake retarget --landmarks"),
     Action("save_places", "Save landmark file…", "Retarget", twin="retake retarget --landmarks"),
     Action("read_places", "Read landmark file…", "Retarget", twin="retake retarget --landmarks"),
+    Action("review_tool", "Review", "Review", ("Q",), "Review", True, twin="retake review"),
+    Action("next_change", "Next change", "Review", ("Alt+Down",), twin="retake review --json"),
+    Action("previous_change", "Previous change", "Review", ("Alt+Up",), twin="retake review --json"),
+    Action("compare_take", "Compare with another take…", "Review", twin="retake review BEFORE AFTER"),
+    Action("approve", "Approve", "Review", ("Ctrl+Shift+A",), twin="a verdict belongs to a project"),
+    Action("send_back", "Needs work", "Review", ("Ctrl+Shift+W",), twin="a verdict belongs to a project"),
+    Action("write_report", "Write a report…", "Review", ("Ctrl+Shift+E",), twin="retake review -o REPORT.html"),
     Action("expand_lane", "Show or hide the weights below", "View", ("W",)),
     Action("play", "Play or pause", "Playback", ("Space",), "▶", True, twin="retake render -o OUT.mp4"),
     Action("play_backwards", "Play backwards", "Playback", ("J",)),
@@ -138,6 +147,9 @@ LINES = frozenset(
         "carry",
         "suggest_labels",
         "place_rest",
+        "compare_take",
+        "approve",
+        "write_report",
         "sound_later",
         "next_frame",
         "next_span",
@@ -152,10 +164,10 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("open_take", "save", "export"),
     ("undo", "redo"),
     ("drag_tool", "draw_tool", "scale_tool", "pin_tool", "mark_tool"),
-    ("fill", "clean_tool", "live_tool", "retarget_tool"),
+    ("fill", "clean_tool", "live_tool", "retarget_tool", "review_tool"),
     ("play", "loop"),
 )
-MENUS: tuple[str, ...] = ("File", "Edit", "Tools", "Retarget", "Playback", "View", "Help")
+MENUS: tuple[str, ...] = ("File", "Edit", "Tools", "Retarget", "Review", "Playback", "View", "Help")
 
 
 def keys_of(entry: Action, preset: str) -> tuple[str, ...]:

@@ -38,7 +38,7 @@ class VisemeActions(QObject):
 
     def attach(self, path: Path) -> None:
         """Read a file of phones or mouth cues and lay it beside the open take."""
-        self.reading.submit((path, self._session.original))
+        self.reading.submit((path, self._session.recorded))
 
     def attach_visemes(self) -> None:
         """Choose what is said when: a TextGrid or mouth cues."""
@@ -83,8 +83,8 @@ class VisemeActions(QObject):
         return self._session.visemes
 
     def _arrived(self, request: tuple[Path, Take], lane: VisemeLane) -> None:
-        path, original = request
-        if original is self._session.original:
+        path, recorded = request
+        if recorded is self._session.recorded:
             self._push(lane, f"attach {path.name}")
 
     def _push(self, lane: VisemeLane | None, title: str) -> None:

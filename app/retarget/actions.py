@@ -158,7 +158,7 @@ class RetargetActions(QObject):
 
     def save_labels(self) -> None:
         """Choose a file and write the labels."""
-        self._to_file("Save the labels", "labels", {".json": "Labels"}, self.labelling.write)
+        self._to_file("Save the labels", "labels", {"Labels (*.json)": ".json"}, self.labelling.write)
 
     def read_labels(self) -> None:
         """Choose a file of labels."""
@@ -174,7 +174,7 @@ class RetargetActions(QObject):
 
     def save_places(self) -> None:
         """Choose a landmark file and write where the markers are."""
-        self._to_file("Save the landmarks", "landmarks", {".csv": "Landmarks"}, self.placing.write)
+        self._to_file("Save the landmarks", "landmarks", {"Landmarks (*.csv)": ".csv"}, self.placing.write)
 
     def read_places(self) -> None:
         """Choose a landmark file that says where the markers are."""
@@ -189,7 +189,7 @@ class RetargetActions(QObject):
             self._try(lambda: use(Path(name)))
 
     def _to_file(self, title: str, stem: str, kinds: Mapping[str, str], use: Callable[[Path], None]) -> None:
-        path = ask_where(self._window, title, Path.home() / f"{stem}{next(iter(kinds))}", kinds)
+        path, _ = ask_where(self._window, title, Path.home() / f"{stem}{next(iter(kinds.values()))}", kinds)
         if path is not None:
             self._try(lambda: use(path))
 

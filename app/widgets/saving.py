@@ -10,27 +10,26 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 Answer = QMessageBox.StandardButton
 
 
-def ask_where(parent: QWidget, title: str, suggested: Path, kinds: Mapping[str, str]) -> Path | None:
-    """Return the file that the user chose to write, or None.
+def ask_where(parent: QWidget, title: str, suggested: Path, kinds: Mapping[str, str]) -> tuple[Path | None, str]:
+    """Return the file that the user chose to write, or None, and the kind that was chosen.
 
     A name without one of the endings gets that of the kind which was chosen, and where this names a file that is there
     already, the user is asked about it: the dialog only asked about the name as it was typed.
 
     Parameters
     ----------
-    kinds : what the user may choose from, by ending: ``{".csv": "Live Link Face CSV"}``; the first is the usual one
+    kinds : the ending by what the user may choose from: ``{"Live Link Face CSV (*.csv)": ".csv"}``; usual first
     """
-    filters = {f"{kind} (*{ending})": ending for ending, kind in kinds.items()}
     while True:
-        name, chosen = QFileDialog.getSaveFileName(parent, title, str(suggested), ";;".join(filters))
-        if not name:
-            return None
+        name, kind = QFileDialog.getSaveFileName(parent, title, str(suggested), ";;".join(kinds))
         path = Path(name)
-        if path.suffix.lower() in kinds:
-            return path
-        path = path.with_name(path.name + filters.get(chosen, next(iter(kinds))))
+        if not name:
+            return None, kind
+        if path.suffix.lower() in kinds.values():
+            return path, kind
+        path = path.with_name(path.name + kinds.get(kind, next(iter(kinds.values()))))
         if not path.exists() or may_replace(parent, f"{path.name} is there already."):
-            return path
+            return path, kind
         suggested = path
 
 

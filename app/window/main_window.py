@@ -28,6 +28,7 @@ from app.clean.section import CleanSection
 from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
 from app.curves.tools import TOOLS
+from app.importing.line import ImportLine
 from app.inspector.brush import BrushSection
 from app.inspector.facts import FactsSection
 from app.inspector.media import MediaSection
@@ -42,6 +43,7 @@ from app.playback.transport import Transport
 from app.preview.panel import PreviewPanel
 from app.preview.reference import ReferencePanel
 from app.retarget.actions import RetargetActions
+from app.review.actions import ReviewActions
 from app.session import MEDIA, Change, Session
 from app.session.flagging import Flagging
 from app.session.inference import Inference
@@ -55,6 +57,8 @@ from app.window.keyboard import Keyboard
 from app.window.missing import MissingMedia
 from app.window.notices import Notices
 from app.window.status import StatusBar
+from engine.formats.importing import imported
+from engine.performance import demo
 from engine.take import Take
 
 
@@ -88,6 +92,7 @@ class MainWindow(QMainWindow):
         self.sound = MediaActions(self.session, self.media, self)
         self.status = StatusBar(self.session, self.keeper, self.files.opening, self.media)
         self.notices, self.missing = Notices(), MissingMedia()
+        self.importing = ImportLine(self.session)
         self.preview = PreviewPanel(self.session, self.inference)
         self.reference = ReferencePanel(self.session)
         self.curves = CurvesPanel(self.session, self.inference, self.colours)
@@ -102,9 +107,11 @@ class MainWindow(QMainWindow):
         self.smoothing, self.facts = SmoothSection(self.session), FactsSection(self.session)
         self.spans = SpansSection(self.session, self.filling)
         self.live = LiveSection(self.session, self.keeper.folder)
+        self.keeper.kept.connect(lambda contents: self.live.settle(contents.original))
         self.attached = MediaSection(self.session)
         self.notes = NotesSection(self.session)
         self.retarget = RetargetActions(self.session, self)
+        self.review = ReviewActions(self.session, self)
         sections = (
             self.brush,
             self.value,
@@ -114,6 +121,7 @@ class MainWindow(QMainWindow):
             *self.retarget.sections,
             self.smoothing,
             self.spans,
+            self.review.section,
             self.facts,
             self.attached,
             self.notes,
@@ -127,15 +135,27 @@ class MainWindow(QMainWindow):
         self._show_tool()
         self._lay_out()
         self._connect()
+        self._connect_importing()
         self.preferences.apply_all()
         self.resize(1440, 900)
         self.session.open(take, path)
+        self.files.imported = imported(take)
         self._show_opened()
 
     # --- building
 
     def _do(self, name: str) -> None:
-        owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.retarget, self.preferences)
+        owners = (
+            self,
+            self.files,
+            self.sound,
+            self.edits,
+            self.time,
+            self.visemes,
+            self.retarget,
+            self.review,
+            self.preferences,
+        )
         owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
 
@@ -178,6 +198,7 @@ class MainWindow(QMainWindow):
         column.addWidget(self.menus.toolbar())
         column.addWidget(self.notices)
         column.addWidget(self.missing)
+        column.addWidget(self.importing)
         column.addLayout(middle, 1)
         column.addWidget(self.status)
         self.setCentralWidget(central)
@@ -185,7 +206,7 @@ class MainWindow(QMainWindow):
     def _connect(self) -> None:
         self.session.changed.connect(self._on_change)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        shown = (self.preview, self.media, self.reference, self.live, self.retarget)
+        shown = (self.preview, self.media, self.reference, self.live, self.retarget, self.review)
         for part in (*shown, self.inference, self.filling, self.keeper, self.visemes, self.timeline.visemes):
             part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self.status.timed)
@@ -208,7 +229,6 @@ class MainWindow(QMainWindow):
         self.live.face.connect(self.preview.show_live)
         self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
-        self.keeper.kept.connect(lambda contents: self.live.settle(contents.original))
         self.retarget.shown.connect(self.preview.show_sides)
         self.retarget.retargeting.capture_opened.connect(self.files.open_recording)
         self.preview.picked.connect(self.retarget.pick)
@@ -218,6 +238,8 @@ class MainWindow(QMainWindow):
         self.files.character_chosen.connect(self.retarget.retargeting.show_on)
         self.retarget.retargeting.head_read.connect(self.preview.show_character)
         self.retarget.retargeting.told.connect(self.status["notice"].setText)
+        self.review.told.connect(self.status["notice"].setText)
+        self.review.open_take = self.files.open_then
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
         self.timeline.visemes.wanted.connect(self._do)
@@ -234,6 +256,11 @@ class MainWindow(QMainWindow):
         self._show_missing()
         self._show_filling()
         self._keyboard = Keyboard(self, self.preview)
+
+    def _connect_importing(self) -> None:
+        self.importing.refused.connect(self.notices.tell)
+        self.importing.chosen.connect(self.curves.setFocus)
+        self.importing.hide_button.clicked.connect(self._show_importing)
 
     def _connect_media(self) -> None:
         self.media.missing_changed.connect(self._show_missing)
@@ -260,9 +287,22 @@ class MainWindow(QMainWindow):
     def _show_opened(self) -> None:
         self.transport.run(0.0)
         self.notices.hide()
-        self.status["notice"].setText(" ".join(self.session.take.notices))
         self._show_title()
         self.status.show_take()
+        from_file = self.keeper.path is None and self.session.path not in (None, demo.BUNDLED)
+        self.importing.tell(self.files.imported, shown=from_file)
+        there = from_file and self.importing.there  # it has what was noticed
+        self.status["notice"].setText("" if there else " ".join(self.session.take.notices))
+        self._show_importing()
+
+    def show_import(self) -> None:
+        """Show or hide how the open take was read."""
+        self.importing.setVisible(self.importing.there and self.importing.isHidden())
+        self._show_importing()
+
+    def _show_importing(self) -> None:
+        self.actions_by_name["show_import"].setEnabled(self.importing.there)
+        self.actions_by_name["show_import"].setChecked(not self.importing.isHidden())
 
     def _show_saved(self, *_: object) -> None:
         self.notices.hide()
@@ -309,6 +349,7 @@ class MainWindow(QMainWindow):
         self.visemes.close()
         self.live.shut_down()
         self.retarget.retargeting.close()
+        self.review.close()
         self.preview.close_renderer()
         self.preferences.close()
 

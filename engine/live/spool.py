@@ -16,11 +16,13 @@ from engine.formats import livelink
 from engine.formats.atomic import sync_folder
 from engine.formats.content import content_of
 from engine.formats.lock import FileLock, InUseError
+from engine.formats.reading import Reading
 from engine.formats.unfinished import whole_rows
 from engine.live.record import Recorder
 from engine.take import SHAPES, Array, Take
 
 SETTLED_S = 1.0  # no packet comes later than this behind another; rows must stand in the order of time
+AS_SPOOLED = Reading(sides="recorded")  # it is written as the app does, whatever its motion looks like
 SYNC_S = 1.0  # of a recording that a power cut may take
 
 
@@ -141,7 +143,7 @@ def recovered(path: Path) -> Take | None:
     content = content_of(path)
     rows = whole_rows(content).split(b"\n")[1:]
     if any(row.count(b",") > 1 for row in rows):
-        return livelink.read(path)
+        return livelink.read(path, reading=AS_SPOOLED)
     if not content.startswith(livelink.header()[: len(content)]):
         raise FormatError(f"{path.name} is no recording.")
     return None

@@ -5,6 +5,7 @@ from engine.project.claim import DisplacedError
 from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (
     MARK,
+    READING,
     VISEMES,
     Contents,
     Edit,
@@ -16,15 +17,19 @@ from engine.project.records import (
     Summary,
     mark_edit,
     marks_of,
+    read_as_of,
+    reading_edit,
 )
-from engine.project.replaying import Replayed, replay
+from engine.project.replaying import Before, Replayed, replay
 from engine.project.store import ENDING, Project, create, delete, peek, recover
 from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
 __all__ = [
     "ENDING",
     "MARK",
+    "READING",
     "VISEMES",
+    "Before",
     "Contents",
     "DisplacedError",
     "Edit",
@@ -49,6 +54,8 @@ __all__ = [
     "name_of",
     "peek",
     "placed",
+    "read_as_of",
+    "reading_edit",
     "recover",
     "replay",
     "viseme_edit",
