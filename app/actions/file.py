@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
+from threading import Thread
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
@@ -16,9 +17,14 @@ from app.session import Session
 from app.session.keeper import Keeper
 from app.session.opening import Opened, Opening, Wish
 from app.settings import Settings
+<<<<<<< HEAD
 from app.widgets.text import message_box
+=======
+from app.widgets.saving import ask_where, may_replace
+>>>>>>> wt-store
 from engine.errors import EngineError
 from engine.formats import FORMATS, cues, livelink_folder, write_take
+from engine.formats.atomic import sweep
 from engine.formats.importing import Imported
 from engine.formats.livelink_folder import CARD
 from engine.formats.reading import Sides
@@ -27,6 +33,8 @@ from engine.take import Take
 from engine.words import NAME_LENGTH, plain
 
 Answer = QMessageBox.StandardButton
+ORIGINAL = "{} is the take as it was recorded."
+COPY = "What you do to it here is kept as unsaved work, until you save it under another name."
 # What a take is exported as: as it was read, or with left and right of mouth and jaw as the app or by their names.
 SIDES_WRITTEN: dict[str, Sides] = {
     "": "automatic",
@@ -36,6 +44,7 @@ SIDES_WRITTEN: dict[str, Sides] = {
 EXPORTS: dict[str, Sides] = {
     f"{entry.title}{words} (*{entry.endings[0]})": sides for entry in FORMATS for words, sides in SIDES_WRITTEN.items()
 }
+ENDINGS = {kind: entry.endings[0] for entry in FORMATS for kind in EXPORTS if kind.startswith(entry.title)}
 CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 
 
@@ -67,6 +76,7 @@ class FileActions(QObject):
         self.opening.done.connect(self._confirm)
         self.opening.changed.connect(self._keep_again)
         self.opening.failed.connect(self.told)
+        self.opening.in_use.connect(self._offer_copy)
         self._settings, self._window = settings, window
         keeper.saved.connect(settings.remember)
 
@@ -102,6 +112,12 @@ class FileActions(QObject):
             self._reopens = False
             self._keeper.keep()
 
+    def _offer_copy(self, path: Path, sentence: str) -> None:
+        """Offer to work on a copy of a project that another program has open."""
+        question = f"{sentence}\n\nOpen a copy? {COPY}"
+        if QMessageBox.question(self._window, "Open elsewhere", question, Answer.Open | Answer.Cancel) == Answer.Open:
+            self.opening.read(path, read_only=True)
+
     def _confirm(self, opened: Opened) -> None:
         """Open what was read; ask for unsaved edits where there are any that the user did not give up."""
         self._newest, self._reopens = opened.wish, False
@@ -128,10 +144,8 @@ class FileActions(QObject):
             self._settings.remember(path)
         self.opened.emit()
         if opened.project is not None and opened.project.read_only:
-            self.told.emit(
-                f"{path.name} cannot be written here; your edits are kept as unsaved work.",
-                "Save it under another name.",
-            )
+            what = f"This is a copy of {path.name}" if opened.wish.read_only else f"{path.name} cannot be written here"
+            self.told.emit(f"{what}; your edits are kept as unsaved work.", "Save it under another name.")
 
     def take_in(self, path: Path) -> None:
         """Open or attach a file, by its ending."""
@@ -176,20 +190,17 @@ class FileActions(QObject):
 
     def save_as(self) -> bool:
         """Choose a file and save the project: the original, every edit, and what can be undone."""
-        stem = Path(self._session.name).stem
-        kind = f"Retake project (*{ENDING})"
-        name, _ = QFileDialog.getSaveFileName(self._window, "Save the project", self._beside(f"{stem}{ENDING}"), kind)
-        return bool(name) and self._save_to(Path(name).with_suffix(ENDING))
+        suggested = self._beside(f"{Path(self._session.name).stem}{ENDING}")
+        kinds = {f"Retake project (*{ENDING})": ENDING}
+        path, _ = ask_where(self._window, "Save the project", suggested, kinds)
+        return path is not None and self._save_to(path)
 
     def export(self) -> bool:
         """Choose a file and write the edited take as other programs read it."""
-        stem = Path(self._session.name).stem
-        name, kind = QFileDialog.getSaveFileName(
-            self._window, "Export the take", self._beside(f"{stem}_edited.csv"), ";;".join(EXPORTS)
-        )
-        if not name:
+        suggested = self._beside(f"{Path(self._session.name).stem}_edited.csv")
+        path, kind = ask_where(self._window, "Export the take", suggested, ENDINGS)
+        if path is None or (self._is_original(path) and not may_replace(self._window, ORIGINAL.format(path.name))):
             return False
-        path = Path(name) if Path(name).suffix else Path(name).with_suffix(".csv")
         try:
             write_take(self._session.take, path, EXPORTS.get(kind, "automatic"))
         except EngineError as error:
@@ -252,7 +263,9 @@ class FileActions(QObject):
             otherwise()
 
     def offer_left_over(self) -> None:
-        """Offer the work of a program that ended early."""
+        """Offer the work of a program that ended early, and remove what it was writing."""
+        folders = {Path(path).parent for path in self._settings.recent}
+        Thread(target=_sweep_all, args=(folders,), daemon=True).start()  # a folder on a network may not answer
         left = self._keeper.left_over()
         if not left:
             return
@@ -276,10 +289,21 @@ class FileActions(QObject):
         self._keeper.save_as(path)
         return True
 
-    def _beside(self, name: str) -> str:
+    def _is_original(self, path: Path) -> bool:
+        """Return whether a file is the recording that is open, or has the name of the one a project was made of."""
+        opened = self._session.path
+        same = opened is not None and opened.exists() and path.exists() and path.samefile(opened)
+        return path.exists() and (same or path.name == self._session.original.name)
+
+    def _beside(self, name: str) -> Path:
         """Return a name in the folder of what is open; the program's own demo take is no place to save to."""
         from engine.performance import demo
 
         path = self._session.path
         folder = path.parent if path is not None and path != demo.BUNDLED else Path.home()
-        return str(folder / name)
+        return folder / name
+
+
+def _sweep_all(folders: Iterable[Path]) -> None:
+    for folder in folders:
+        sweep(folder)

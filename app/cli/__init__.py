@@ -8,7 +8,11 @@ from typing import Annotated, cast
 import typer
 
 from app.cli import blind, character, clean, fill, flags, review, smooth, spacetime, tables, takes, training
+<<<<<<< HEAD
 from app.printing import remark, say
+=======
+from app.cli.outputs import protect_inputs
+>>>>>>> wt-store
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 
@@ -28,7 +32,7 @@ def build() -> typer.Typer:
     app.callback()(_start)
     for family in FAMILIES:
         family.register(app)
-    return app
+    return protect_inputs(app)
 
 
 def _tell_version(wanted: bool) -> None:

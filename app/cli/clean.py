@@ -105,8 +105,6 @@ def _write_recording(recorder: Recorder, spool: Spool, record: Path) -> None:
 
 
 def _saved(spool: Spool) -> bool:
-    if spool.failed:  # it has a hole
-        return False
     try:
         spool.save(all_rows=True)
     except EngineError:
@@ -144,11 +142,17 @@ def _tell(listener: Listener, seconds: float | None, spool: Spool | None, *, as_
     while seconds is None or time.monotonic() - began < seconds:
         left = _TOLD_EVERY_S if seconds is None else min(_TOLD_EVERY_S, seconds - (time.monotonic() - began))
         time.sleep(max(0.0, left))
-        if spool is not None and not spool.failed:
+        if spool is not None:
+            failed_before = spool.failed
             try:
                 spool.save()
             except EngineError as error:
+<<<<<<< HEAD
                 remark(f"{error} The recording goes on in memory.")
+=======
+                if not failed_before:
+                    errors.print(f"{error} The recording goes on in memory.", highlight=False)
+>>>>>>> wt-store
         status = listener.status()
         listener.frames()
         latency = None if status.latency_p95_ms != status.latency_p95_ms else round(status.latency_p95_ms, 3)

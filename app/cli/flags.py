@@ -72,7 +72,7 @@ def _seen(path: Path, reading: Reading, original: Take | None, lane: VisemeLane 
 
     if path.suffix.lower() != ENDING:
         return seen_of(read_take(path, reading=reading), original, visemes=lane)
-    project = Project.open(path)
+    project = Project.open(path, read_only=True)
     try:
         state = replay(project.contents)
         shown = livelink.reread(state.take, reading, keep=True)

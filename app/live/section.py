@@ -48,7 +48,9 @@ class LiveSection(Section):
         super().__init__(session, "Live")
         self._folder = folder
         self._spool: Spool | None = None
-        self._waiting: tuple[Take, Spool | None] | None = None  # a recording that is not open yet
+        self._waiting: Take | None = None  # a recording that is not open yet
+        self._unsafe: tuple[Take, Spool | None] | None = None  # one that no other file holds yet
+        self._told = ""  # once is enough, until it works again
         session.changed.connect(self._on_change)
         self._listener: Listener | None = None
         self._recorder: Recorder | None = None
@@ -129,9 +131,11 @@ class LiveSection(Section):
         """Stop for good; a recording under way stays on disk and is offered at the next start."""
         if self._recorder is not None:
             self._save(all_rows=True)
-            self._close_spool(remove=False)
             self._recorder = None
         self.stop()
+        self._close_spool(remove=False)
+        if self._unsafe is not None and self._unsafe[1] is not None:
+            self._unsafe[1].close(remove=False)
 
     def toggle_recording(self) -> None:
         """Begin to record, or end and open what was recorded."""
@@ -166,17 +170,21 @@ class LiveSection(Section):
             self._close_spool(remove=True)
             return
         self._save(all_rows=True)
-        self._waiting = (take, self._spool)
-        self._close_spool(remove=False)
+        self._waiting, self._unsafe, self._spool = take, (take, self._spool), None
         self.recorded.emit(take)
         if self._waiting is not None:
             self.failed.emit("The recording waits until your edits are safe.", "Else it is offered at the next start.")
 
-    def _on_change(self, change: Change) -> None:
-        if self._waiting is not None and change & Change.TAKE and self.session.take is self._waiting[0]:
-            spool, self._waiting = self._waiting[1], None
+    def settle(self, original: Take) -> None:
+        """Remove the growing file of a recording that another file holds by now: the one with this take."""
+        if self._unsafe is not None and self._unsafe[0] is original:
+            spool, self._unsafe = self._unsafe[1], None
             if spool is not None:
                 spool.close(remove=True)
+
+    def _on_change(self, change: Change) -> None:
+        if change & Change.TAKE and self.session.take is self._waiting:
+            self._waiting = None
 
     def _close_spool(self, *, remove: bool) -> None:
         if self._spool is not None:
@@ -184,12 +192,15 @@ class LiveSection(Section):
             self._spool = None
 
     def _save(self, *, all_rows: bool = False) -> None:
-        if self._spool is None or self._spool.failed:
+        if self._spool is None:
             return
         try:
             self._spool.save(all_rows=all_rows)
+            self._told = ""
         except EngineError as error:
-            self.failed.emit(error.sentence, error.advice)
+            if error.sentence != self._told:
+                self._told = error.sentence
+                self.failed.emit(error.sentence, f"The recording goes on in memory. {error.advice}")
 
     def on_screen(self, spent_ms: float) -> None:
         """Take note of how long a packet took until its picture was shown."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -16,6 +16,7 @@ from app.retarget.retargeting import Retargeting
 from app.retarget.section import RetargetSection
 from app.retarget.sides import sides
 from app.session import Session
+from app.widgets.saving import ask_where
 from app.widgets.section import Section
 from engine.errors import EngineError
 
@@ -159,7 +160,7 @@ class RetargetActions(QObject):
 
     def save_labels(self) -> None:
         """Choose a file and write the labels."""
-        self._to_file("Save the labels", "labels.json", "Labels (*.json)", self.labelling.write)
+        self._to_file("Save the labels", "labels", {"Labels (*.json)": ".json"}, self.labelling.write)
 
     def read_labels(self) -> None:
         """Choose a file of labels."""
@@ -175,7 +176,7 @@ class RetargetActions(QObject):
 
     def save_places(self) -> None:
         """Choose a landmark file and write where the markers are."""
-        self._to_file("Save the landmarks", "landmarks.csv", "Landmarks (*.csv)", self.placing.write)
+        self._to_file("Save the landmarks", "landmarks", {"Landmarks (*.csv)": ".csv"}, self.placing.write)
 
     def read_places(self) -> None:
         """Choose a landmark file that says where the markers are."""
@@ -189,10 +190,10 @@ class RetargetActions(QObject):
         if name:
             self._try(lambda: use(Path(name)))
 
-    def _to_file(self, title: str, name: str, kinds: str, use: Callable[[Path], None]) -> None:
-        name, _ = QFileDialog.getSaveFileName(self._window, title, str(Path.home() / name), kinds)
-        if name:
-            self._try(lambda: use(Path(name)))
+    def _to_file(self, title: str, stem: str, kinds: Mapping[str, str], use: Callable[[Path], None]) -> None:
+        path, _ = ask_where(self._window, title, Path.home() / f"{stem}{next(iter(kinds.values()))}", kinds)
+        if path is not None:
+            self._try(lambda: use(path))
 
     def _try(self, do: Callable[[], None]) -> None:
         try:

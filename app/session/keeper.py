@@ -3,36 +3,33 @@
 from __future__ import annotations
 
 import logging
-import os
 import threading
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
-from datetime import datetime
+from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 
-import platformdirs
-from PySide6.QtCore import QCoreApplication, QEvent, QObject, Signal
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
 
 from app.background import LatestWins
+from app.session.keeping import Kept, Look, Saving, as_unsaved_work
+from app.session.left_over import LeftOver, new_path, unsaved_folder, unsaved_work
 from app.session.opening import Opened
 from app.session.session import Change, Session
-from app.settings import NAME
 from engine import project
 from engine.errors import EngineError
+<<<<<<< HEAD
 from engine.formats import read_take
 from engine.formats.reading import Reading
 from engine.project import Contents, Project
 from engine.take import timecode
 from engine.words import counted
+=======
+from engine.project import Contents, DisplacedError, Project
+>>>>>>> wt-store
 
 log = logging.getLogger(__name__)
-STALE_S = 86_400.0  # a file that was being made this long ago never will be
-RECORDINGS = "*.partial*.csv"
-AS_SPOOLED = Reading(sides="recorded")  # it is written as the app does, whatever its motion looks like
-ABANDONED_S = 5.0  # a recording is touched every second
 PATIENCE_S = 0.3  # a wait that nobody notices when a take is closed
+<<<<<<< HEAD
 
 
 def unsaved_folder() -> Path:
@@ -79,13 +76,17 @@ def _as_unsaved_work(path: Path) -> Iterator[None]:
         yield
     except EngineError as error:
         raise EngineError(error.sentence.replace(path.name, "unsaved work"), error.advice) from error
+=======
+LOOK_MS = 3000  # between looks whether the project is still the one that was opened
+>>>>>>> wt-store
 
 
 class Keeper(QObject):
     """Commits each change of a session's undo stack and marks, and saves projects, on a thread of its own.
 
     Where a step cannot be written the work stays in memory, and the next step brings all that is missing. While a
-    project is being copied, the steps made meanwhile go to the file that is copied, and with it to the copy.
+    project is being copied, the steps made meanwhile go to the file that is copied, and with it to the copy. A project
+    that somebody replaced or deleted is let go of as it is, and all of the work goes on as unsaved work.
 
     Parameters
     ----------
@@ -99,13 +100,14 @@ class Keeper(QObject):
     saved = Signal(object)  # the path of a project that was just saved
     progress = Signal(float)  # the share of the save that is done, from the keeper's thread
     saving_changed = Signal()
+    _displaced = Signal(object)  # a DisplacedError, from the keeper's thread
 
     def __init__(self, session: Session, folder: Path | None = None) -> None:
         super().__init__()
         self._session, self.folder = session, folder or unsaved_folder()
-        self._kept: _Kept | None = None
+        self._kept: Kept | None = None
         self._newest = session.contents()  # what is to be written
-        self._wished: _Saving | None = None
+        self._wished: Saving | None = None
         self._stopped = False
         self._waits: Contents | None = None  # steps that could not be kept while a copy was made
         self._afterwards: list[Callable[[], None]] = []
@@ -118,6 +120,9 @@ class Keeper(QObject):
         self._work.rested.connect(self._go_on)
         session.undo.indexChanged.connect(self._keep)
         session.changed.connect(self._on_change)
+        self._displaced.connect(self._on_displaced)
+        self._looks = QTimer(self, interval=LOOK_MS)
+        self._looks.timeout.connect(self._look)
 
     @property
     def path(self) -> Path | None:
@@ -172,7 +177,7 @@ class Keeper(QObject):
         Returns at once; `saved` or `failed` follows. Where it fails nothing is lost: neither what was at the path, nor
         the work.
         """
-        self._newest, self._wished, self._stopped = self._session.contents(), _Saving(path), False
+        self._newest, self._wished, self._stopped = self._session.contents(), Saving(path), False
         self._work.submit(self._wished, "save")
         self.saving_changed.emit()
 
@@ -200,18 +205,7 @@ class Keeper(QObject):
 
     def left_over(self) -> list[LeftOver]:
         """Return the unsaved work of programs that run no more, newest first."""
-        self._sweep()
-        self._take_in_recordings()
-        found = []
-        for path in self.folder.glob(f"*{project.ENDING}"):
-            try:
-                summary = project.peek(path)
-            except (EngineError, OSError) as error:  # open elsewhere, or damaged: it is left where it is
-                log.info("%s is not offered: %s", path.name, error)
-                continue
-            length = timecode(summary.frames / summary.fps, summary.fps)
-            found.append(LeftOver(path, summary.name, summary.edits, summary.changed, length))
-        return sorted(found, key=lambda entry: entry.changed, reverse=True)
+        return unsaved_work(self.folder)
 
     def discard(self, left: LeftOver) -> None:
         """Remove unsaved work for good; raises `EngineError` when another program has taken it."""
@@ -241,35 +235,68 @@ class Keeper(QObject):
         self._newest = contents
         self._work.submit(contents)
 
-    def _write(self, wanted: Contents | _Saving) -> Project:
+    def _look(self) -> None:
+        if self._kept is not None and self._work.idle:
+            self._work.submit(Look(), "look")
+
+    def _write(self, wanted: Contents | Saving | Look) -> Project | None:
         """Bring the file to these contents, or save it elsewhere; runs on the keeper's thread."""
         with self._lock:
-            if isinstance(wanted, _Saving):
+            if isinstance(wanted, Saving):
                 return self._save(wanted.path)
+            contents = self._newest if isinstance(wanted, Look) else wanted
             if self._kept is None:
-                path = self._new_path()
-                with _as_unsaved_work(path):
-                    self._kept = _Kept(project.create(path, wanted), saved=False)
-            elif wanted is not self._kept.project.contents:  # a save may have brought them already
-                with nullcontext() if self._kept.saved else _as_unsaved_work(self._kept.project.path):
-                    self._kept.project.put(wanted)
+                return None if isinstance(wanted, Look) else self._keep_unsaved(contents)
+            with nullcontext() if self._kept.saved else as_unsaved_work(self._kept.project.path):
+                try:
+                    if isinstance(wanted, Look):
+                        self._kept.project.check()
+                    elif contents is not self._kept.project.contents:  # a save may have brought them already
+                        self._kept.project.put(contents)
+                except DisplacedError as error:
+                    self._go_on_unsaved(contents, error)
             return self._kept.project
 
-    def _written(self, wanted: Contents | _Saving, result: Project) -> None:
+    def _keep_unsaved(self, contents: Contents) -> Project:
+        """Let the work go to a new file of unsaved work; what was kept in before is let go of, as it is."""
+        before, path = self._kept, new_path(self.folder)
+        with as_unsaved_work(path):
+            made = project.create(path, contents)
+        self._kept = Kept(made, saved=False)
+        if before is not None:
+            before.project.close()
+        return made
+
+    def _go_on_unsaved(self, contents: Contents, error: DisplacedError) -> None:
+        """Keep all of the work elsewhere: the file that it went to is no more its own."""
+        kept = self._project
+        same = kept is not None and contents.original is kept.contents.original
+        self._keep_unsaved(contents if same or kept is None else kept.contents)
+        self._displaced.emit(error)
+
+    def _on_displaced(self, error: DisplacedError) -> None:
+        self._session.undo.resetClean()
+        if self._wished is None:  # else the save tells it
+            self.failed.emit(error.sentence, error.advice)
+
+    def _written(self, wanted: Contents | Saving | Look, result: Project | None) -> None:
+        if isinstance(wanted, Look):
+            return
         if self._told:
             self.mended.emit(self._told)
             self._told = ""
-        if isinstance(wanted, _Saving):
+        if isinstance(wanted, Saving) and result is not None:
             self._arrived(wanted, result)
-        else:
+        elif isinstance(wanted, Contents):
             self._show_clean(wanted)
             self.kept.emit(wanted)
 
-    def _arrived(self, wanted: _Saving, result: Project) -> None:
+    def _arrived(self, wanted: Saving, result: Project) -> None:
         if wanted is self._wished:
             self._end_saving()
         if result is self._project:  # else another take was opened meanwhile
             self._session.path = result.path
+            self._looks.start()
             self._show_clean(result.contents)
             self.saved.emit(result.path)
 
@@ -279,8 +306,8 @@ class Keeper(QObject):
         if self.path and latest and now.original is safe.original:
             self._session.undo.setClean()
 
-    def _refused(self, wanted: Contents | _Saving, sentence: str, advice: str) -> None:
-        asked_for = isinstance(wanted, _Saving)
+    def _refused(self, wanted: Contents | Saving | Look, sentence: str, advice: str) -> None:
+        asked_for = isinstance(wanted, Saving)
         if asked_for:
             self._afterwards.clear()
         if wanted is self._wished:
@@ -308,10 +335,13 @@ class Keeper(QObject):
         finally:
             self._opening = False
         if not opened.project.read_only:
-            self._kept = _Kept(opened.project, saved)
+            self._kept = Kept(opened.project, saved)
+            self._secure(self._kept)
+            self._looks.start()
 
     def _detach(self, *, delete: bool) -> None:
         """Go on without a file; unsaved work is removed if it is to be deleted, a project of the user's never is."""
+        self._looks.stop()
         self._work.finish()
         with self._lock:
             before, self._kept = self._kept, None
@@ -328,17 +358,28 @@ class Keeper(QObject):
                 log.exception("%s was not removed", old.path)
 
     def _save(self, path: Path) -> Project:
-        before, saved = self._kept, self._copy(path)
-        self._kept = _Kept(saved, saved=True)
+        saved, before = self._copy(path), self._kept  # in this order: the copy may let go of what was kept in
+        self._kept = Kept(saved, saved=True)
+        self._secure(self._kept)
         if before is not None and before.project is not saved:
             self._let_go(before.project, delete=not before.saved)
         return saved
+
+    def _secure(self, kept: Kept) -> None:
+        """Let a project of the user's be found again even if somebody replaces it just before a kill."""
+        if kept.saved:
+            kept.project.keep_spare(self.folder)
 
     def _copy(self, path: Path) -> Project:
         contents, old = self._newest, self._project
         if old is not None and contents.original is old.contents.original:
             try:
                 old.put(contents)
+            except DisplacedError as error:
+                stays = path.exists() and path.resolve() == old.path.resolve()  # whose it is was not known when asked
+                self._go_on_unsaved(contents, error)
+                if stays:
+                    raise
             except EngineError as error:
                 if path.exists() and path.samefile(old.path):
                     raise
@@ -364,32 +405,3 @@ class Keeper(QObject):
         except EngineError as error:
             self._waits = newest  # once is enough: each attempt lets the copy begin anew
             log.warning("a step waits for the save to end: %s", error)
-
-    def _new_path(self) -> Path:
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            reason = (error.strerror or "unknown reason").lower()
-            raise EngineError(
-                f"Unsaved work cannot be kept in {self.folder}: {reason}.", "Save it, so that nothing can be lost."
-            ) from error
-        return self.folder / f"{time.strftime('%Y%m%d-%H%M%S')}-{os.getpid()}-{time.monotonic_ns()}{project.ENDING}"
-
-    def _take_in_recordings(self) -> None:
-        """Make unsaved work of live recordings that a program did not come to end; one still being made is left alone."""
-        for path in self.folder.glob(RECORDINGS):
-            try:
-                if time.time() - path.stat().st_mtime > ABANDONED_S:
-                    project.create(self._new_path(), Contents(read_take(path, reading=AS_SPOOLED))).close()
-                    path.unlink()
-            except (EngineError, OSError) as error:
-                log.info("%s is not offered: %s", path.name, error)
-
-    def _sweep(self) -> None:
-        """Remove what a killed program was making: it never became a project."""
-        for path in self.folder.glob(".*.part"):
-            try:
-                if time.time() - path.stat().st_mtime > STALE_S:
-                    path.unlink()
-            except OSError:
-                continue

@@ -15,17 +15,35 @@ from app.session.session import Session
 from engine.controls import bundled_measurer
 from engine.errors import EngineError
 from engine.formats import livelink_folder, read_take
+from engine.formats.atomic import sweep
 from engine.formats.importing import Imported, imported
-from engine.project import ENDING, Project, Replayed, replay
+from engine.project import ENDING, InUseError, Project, Replayed, replay
 from engine.take import Array, Take
 
 
 @dataclass(frozen=True, eq=False)
 class Wish:
-    """A file that shall be opened; `left_over` where it is the unsaved work of a program that ended early."""
+    """A file that shall be opened.
+
+    Attributes
+    ----------
+    left_over : whether it is the unsaved work of a program that ended early
+    read_only : whether a project shall be read and not written, since another program has it open
+    """
 
     path: Path
     left_over: bool = False
+    read_only: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class InUse:
+    """What came of a wish to open a project that another program has open."""
+
+    sentence: str
+
+    def drop(self) -> None:
+        """Let go of nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,10 +79,11 @@ class Opened:
 def opened(session: Session, wish: Wish, report: Callable[[float], None] = lambda _: None) -> Opened:
     """Read a file for a session; raises `EngineError`, or what `report` raises, which is told the share that is done."""
     report(0.0)
+    sweep(wish.path.parent)
     if not wish.left_over and wish.path.suffix.lower() != ENDING:
         take = read_take(wish.path, report)
         return Opened(wish, take, livelink_folder.table_of(wish.path), imported(take), 2 * (_measured(take),))
-    project = Project.open(wish.path)
+    project = Project.open(wish.path, read_only=wish.read_only)
     try:
         report(0.0)
         contents = project.contents
@@ -95,6 +114,7 @@ class Opening(QObject):
 
     done = Signal(object)  # an Opened, which is the receiver's to keep or to drop
     failed = Signal(str, str)  # sentence, advice
+    in_use = Signal(object, str)  # the path of a project that another program has open, and a sentence about it
     progress = Signal(float)  # the share of a take that is read, from the thread
     changed = Signal()  # another file is read, or none
 
@@ -111,9 +131,9 @@ class Opening(QObject):
         """The file that is read."""
         return self._wish.path if self._wish else None
 
-    def read(self, path: Path, *, left_over: bool = False) -> None:
+    def read(self, path: Path, *, left_over: bool = False, read_only: bool = False) -> None:
         """Read a file in place of the one that is read; returns at once, and `done` or `failed` follows."""
-        self._wish = Wish(path, left_over)
+        self._wish = Wish(path, left_over, read_only)
         self._work.submit(self._wish)
         self.changed.emit()
 
@@ -130,7 +150,7 @@ class Opening(QObject):
         self.stop()
         self._work.stop()
 
-    def _read(self, wish: Wish) -> Opened:
+    def _read(self, wish: Wish) -> Opened | InUse:
         """Read a file, unless it is wished no more; runs on the thread."""
 
         def report(share: float) -> None:
@@ -138,10 +158,16 @@ class Opening(QObject):
                 raise EngineError("This is not wanted any more.")
             self.progress.emit(share)
 
-        return opened(self._session, wish, report)
+        try:
+            return opened(self._session, wish, report)
+        except InUseError as error:
+            return InUse(error.sentence)
 
-    def _arrived(self, wish: Wish, read: Opened) -> None:
-        if wish is self._wish:
+    def _arrived(self, wish: Wish, read: Opened | InUse) -> None:
+        if wish is self._wish and isinstance(read, InUse):
+            self.stop()
+            self.in_use.emit(wish.path, read.sentence)
+        elif wish is self._wish:
             self._wish = None
             self.done.emit(read)
             self.changed.emit()

@@ -116,6 +116,7 @@ class MainWindow(QMainWindow):
         self.smoothing, self.facts = SmoothSection(self.session), FactsSection(self.session)
         self.spans = SpansSection(self.session, self.filling)
         self.live = LiveSection(self.session, self.keeper.folder)
+        self.keeper.kept.connect(lambda contents: self.live.settle(contents.original))
         self.attached = MediaSection(self.session)
         self.notes = NotesSection(self.session)
         self.flags = FlagsSection(self.session)

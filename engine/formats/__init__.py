@@ -48,7 +48,7 @@ def read_take(path: Path, report: Callable[[float], None] | None = None, reading
     if path.suffix.lower() == ".retake":
         from engine.project import Project, replay  # here, since projects themselves keep what formats read
 
-        project = Project.open(path)
+        project = Project.open(path, read_only=True)
         try:
             take = replay(project.contents).take
         finally:

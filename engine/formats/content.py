@@ -6,6 +6,7 @@ import stat
 from pathlib import Path
 
 from engine.errors import FormatError
+from engine.formats import inputs
 
 MAX_BYTES = 1 << 30  # a take of seven hours at 60 frames per second
 
@@ -22,6 +23,7 @@ def require_file(path: Path, *, at_most: int = MAX_BYTES) -> None:
         raise FormatError(f"{path.name} is not an ordinary file.", "Copy what it holds to one.")
     if found.st_size > at_most:
         raise FormatError(f"{path.name} is larger than {at_most >> 20} MB.")
+    inputs.note(path)
 
 
 def content_of(path: Path, *, at_most: int = MAX_BYTES) -> bytes:

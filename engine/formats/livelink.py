@@ -17,6 +17,7 @@ from engine.formats.livelink_sides import Judgement, exchange, judge
 from engine.formats.livelink_table import table
 from engine.formats.livelink_write import header, rows, write
 from engine.formats.reading import AUTOMATIC, ReadAs, Reading
+from engine.formats.unfinished import is_unfinished, whole_rows
 from engine.take import SHAPES, Array, Mask, Take
 
 __all__ = ["DEFAULT_HEADER", "Origin", "header", "judged", "parse", "put", "read", "read_as", "reread", "rows", "write"]
@@ -126,7 +127,7 @@ def _said_sides(judged: Judgement, reading: Reading) -> list[str]:
 
 
 def _content(path: Path) -> bytes:
-    content = content_of(path)
+    content = whole_rows(content_of(path)) if is_unfinished(path) else content_of(path)
     if not content or content.isspace():
         raise FormatError(f"{path.name} is empty.", EXPECTED)
     return content

@@ -1,5 +1,7 @@
 """The `.retake` file: a performance, all that was done to it, and what people noted beside it, in one SQLite database."""
 
+from engine.formats.lock import InUseError
+from engine.project.claim import DisplacedError
 from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (
     MARK,
@@ -19,7 +21,7 @@ from engine.project.records import (
     reading_edit,
 )
 from engine.project.replaying import Before, Replayed, replay
-from engine.project.store import ENDING, InUseError, Project, create, delete, peek
+from engine.project.store import ENDING, Project, create, delete, peek, recover
 from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
 __all__ = [
@@ -29,6 +31,7 @@ __all__ = [
     "VISEMES",
     "Before",
     "Contents",
+    "DisplacedError",
     "Edit",
     "Found",
     "InUseError",
@@ -53,6 +56,7 @@ __all__ = [
     "placed",
     "read_as_of",
     "reading_edit",
+    "recover",
     "replay",
     "viseme_edit",
 ]

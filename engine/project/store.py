@@ -3,65 +3,65 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sqlite3
-import tempfile
+import stat
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 from engine.errors import EngineError, FormatError
-from engine.formats.atomic import replacement
+from engine.formats.atomic import replacement, sweep, unwritten
 from engine.formats.content import require_file
-from engine.project import rows, schema
-from engine.project.blobs import Budget, DamagedError
+from engine.project import rows, schema, spares
+from engine.project.blobs import Budget
+from engine.project.claim import JOURNALS, Claim, belongs, head_of, is_hot
+from engine.project.database import BESIDE, connect, copied, keep_safe, scrap, sentences, settle
 from engine.project.records import Contents, Summary
 
 ENDING = ".retake"
-MAX_BLOB_BYTES = 2**29
 MAX_FILE_BYTES = 2**36
-BESIDE = ("-wal", "-shm", "-journal")  # what SQLite lays beside a database
 STEP_PAGES = 512  # that are copied at a time, 2 MiB
 
 Report = Callable[[float], None]  # the share that is done, 0 to 1; an `EngineError` raised by it stops the work
 
 
-class InUseError(EngineError):
-    """Another running program, or another window, has the project open."""
-
-
 class Project:
     """An open project file, locked against other programs for as long as it is open.
 
-    The log is written ahead (WAL) and flushed at each step (synchronous=FULL): a kill loses nothing that `put` has
-    returned from, and neither does a power cut. The flush takes milliseconds, on a thread that nobody waits for.
+    Each step is flushed to the file itself: a kill loses nothing that `put` has returned from, neither does a power
+    cut, and a copy of the file alone holds every step. A file that another one took the place of is never written.
     """
 
-    def __init__(self, path: Path, contents: Contents, database: sqlite3.Connection | None) -> None:
+    def __init__(self, path: Path, contents: Contents, held: tuple[sqlite3.Connection, Claim] | None = None) -> None:
         self.path = path
         self._contents = contents
-        self._database = database
+        self._database = held[0] if held else None
+        self._claim = held[1] if held else None
+        self._spare: Path | None = None
 
     @classmethod
-    def open(cls, path: Path) -> Project:
-        """Open a project; one that cannot be written is read, and refuses `put`.
+    def open(cls, path: Path, *, read_only: bool = False) -> Project:
+        """Open a project; one that cannot be written, or shall not be, is read without a trace and refuses `put`.
 
-        Raises `FormatError` for a file that is damaged or no project, `InUseError` for one that is open elsewhere.
+        Reading works beside another program that has the project open, and gives what is safe there. Raises
+        `FormatError` for a file that is damaged or no project, and, unless it is only read, `InUseError` for one that
+        is open elsewhere.
         """
         require_file(path, at_most=MAX_FILE_BYTES)
-        if not (os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)):
-            with _copied(path) as copy, closing(_connect(copy, path.name)) as database:
-                return cls(path, _read(database, path), None)
-        database = _connect(path, path.name)
-        try:
-            contents = _read(database, path)
-            with sentences(path.name):
-                database.execute("PRAGMA journal_mode = WAL")
-                database.execute("PRAGMA synchronous = FULL")
-        except BaseException:
-            database.close()
-            raise
-        return cls(path, contents, database)
+        claim = None if read_only else _claim_of(path)
+        if claim is None:
+            with copied(path) as copy:
+                return cls(path, _read_alone(copy))
+        with _released_on_error(claim):
+            database = connect(claim.path, path.name)
+            try:
+                contents = _read(database, claim.path)
+                keep_safe(database, path.name)
+                claim.note()
+            except BaseException:
+                database.close()
+                raise
+        return cls(path, contents, (database, claim))
 
     @property
     def contents(self) -> Contents:
@@ -76,8 +76,9 @@ class Project:
     def put(self, contents: Contents) -> None:
         """Bring the file to these contents, which share the original take, in one transaction.
 
-        What is the same object as before is not written again. Raises `EngineError` where it cannot be written; the
-        file then is as it was, and the next `put` writes all that is missing.
+        What is the same object as before is not written again. Raises `EngineError` where it cannot be written,
+        `DisplacedError` where the file is no more the one that was opened; it then is as it was, and the next `put`
+        writes all that is missing.
         """
         old = self._contents
         if contents.original is not old.original:
@@ -92,125 +93,199 @@ class Project:
             rows.write_state(database, contents)
         self._contents = contents
 
+    def check(self) -> None:
+        """Raise `DisplacedError` where the file is no more the one that was opened; one that is only read may be."""
+        if self._claim is not None:
+            self._claim.check(self.path.name)
+
+    def keep_spare(self, folder: Path) -> None:
+        """Give the file a second name in a folder, by which `recover` finds it if somebody replaces or deletes it."""
+        if self._claim is not None and self._spare is None:
+            self._spare = spares.make(self._claim.path, folder)
+
     def save_as(self, path: Path, report: Report = lambda _: None) -> Project:
         """Copy the file to a path and open the copy; what was at the path stays there, whole, until the copy is.
 
         `report` may `put` further contents: SQLite brings them to the part that is copied already, until all is.
         """
-        database = self._writable()
+        database, _ = self._writable()
         if path.exists() and path.samefile(self.path):
             return self
-        _settle(path)
-        with sentences(path.name), replacement(path) as temporary, closing(_scrap(temporary)) as copy:
-            copied = self._contents
+        with _replaced(path) as (claim, temporary), closing(scrap(temporary)) as copy:
+            contents = self._contents
 
             def step(_: int, left: int, pages: int) -> None:
-                nonlocal copied
-                copied = self._contents  # what is put after the last step is in the old file alone
+                nonlocal contents
+                contents = self._contents  # what is put after the last step is in the old file alone
                 report(1 - left / max(1, pages))
 
             database.backup(copy, pages=STEP_PAGES, progress=step)
-            copy.close()
-        return _attach(path, copied)
+        return _attach(path, contents, claim)
+
+    def __del__(self) -> None:
+        self.close()
 
     def close(self) -> None:
         """Let go of the file."""
-        if self._database is not None:
-            self._database.close()
-            self._database = None
+        if self._database is None or self._claim is None:
+            return
+        self._database.close()  # without a step under way it writes nothing, and SQLite leaves what it finds replaced
+        self._claim.release()
+        self._database = self._claim = None
+        if self._spare is not None:
+            spares.drop(self._spare)
 
-    def _writable(self) -> sqlite3.Connection:
-        if self._database is None:
+    def _writable(self) -> tuple[sqlite3.Connection, Claim]:
+        if self._database is None or self._claim is None:
             raise EngineError(f"{self.path.name} cannot be written.", "Save it under another name.")
-        if not self.path.exists():
-            raise EngineError(f"{self.path.name} was moved or deleted.", "Save your work under a new name.")
-        return self._database
+        self._claim.check(self.path.name)
+        return self._database, self._claim
 
     @contextmanager
     def _transaction(self) -> Iterator[sqlite3.Connection]:
-        database = self._writable()
-        with sentences(self.path.name):
-            database.execute("BEGIN IMMEDIATE")
-            try:
-                yield database
-                database.execute("COMMIT")
-            except BaseException:
-                if database.in_transaction:
-                    database.execute("ROLLBACK")
-                raise
+        database, claim = self._writable()
+        try:
+            with sentences(self.path.name):
+                database.execute("BEGIN IMMEDIATE")
+                try:
+                    yield database
+                    database.execute("COMMIT")
+                except BaseException:
+                    if database.in_transaction:
+                        database.execute("ROLLBACK")
+                    raise
+        finally:
+            claim.note()  # what was undone has touched the file too
 
 
 def create(path: Path, contents: Contents, report: Report = lambda _: None) -> Project:
     """Make a project file and open it; a file that is there already is replaced whole or left as it was."""
-    _settle(path)
-    with sentences(path.name), replacement(path) as temporary, closing(_scrap(temporary)) as database:
+    with _replaced(path) as (claim, temporary), closing(scrap(temporary)) as database:
         database.execute("BEGIN")
         schema.build(database)
         rows.write_contents(database, contents, report)
         database.execute("COMMIT")
-        database.close()
         report(1.0)
-    return _attach(path, contents)
+    return _attach(path, contents, claim)
 
 
 def peek(path: Path) -> Summary:
-    """Return what a project is; raises as `Project.open` does."""
-    with sentences(path.name), closing(_connect(path, path.name)) as database:
-        schema.migrate(database, schema.check(database, path.name))
-        return rows.read_summary(database)
+    """Return what a project is, and bring no older version up to date; raises as `Project.open` does."""
+    claim = _claim_of(path)
+    try:
+        if claim is not None:
+            claim.shed_foreign_journal(_whole, _rolled_back)
+            with closing(connect(claim.path, path.name)) as database, sentences(path.name):
+                if schema.check(database, path.name) == schema.VERSION:
+                    return rows.read_summary(database)
+        with copied(path) as copy, closing(connect(copy, path.name)) as database, sentences(path.name):
+            schema.migrate(database, schema.check(database, path.name))
+            return rows.read_summary(database)
+    finally:
+        if claim is not None:
+            claim.release()
 
 
 def delete(path: Path) -> None:
     """Remove a project and what lies beside it; raises `InUseError` when it is open elsewhere."""
-    with suppress(FormatError), closing(_connect(path, path.name)) as database, sentences(path.name):
-        database.execute("SELECT count(*) FROM sqlite_master").fetchone()
-    path.unlink(missing_ok=True)
-    _clear_beside(path)
+    claim = Claim(path)
+    try:
+        with suppress(FormatError):
+            settle(claim.path, path.name)
+        path.unlink(missing_ok=True)
+        _clear_beside(claim.path)
+    finally:
+        claim.release()
+
+
+def recover(folder: Path, new_path: Callable[[], Path]) -> None:
+    """Put in order what killed programs had open, by the second names that they had given it in a folder.
+
+    A project that was replaced or deleted while it was open goes to a new path in that folder, with all its steps.
+    """
+
+    def tidy(spare: Path, path: Path) -> None:
+        sweep(path.parent)
+        claim = _claim_of(path) if path.parent.is_dir() else None
+        try:
+            displaced = spare.exists() and not (path.exists() and path.samefile(spare))
+            if displaced:
+                for ending in JOURNALS:
+                    journal = path.with_name(path.name + ending)
+                    if claim and is_hot(journal) and belongs(journal, spare, claim.record, _whole, _rolled_back):
+                        os.replace(journal, spare.with_name(spare.name + ending))
+                settle(spare, path.name)
+                os.replace(spare, new_path())
+            if claim is not None:
+                claim.shed_foreign_journal(_whole, _rolled_back)
+                if path.exists():
+                    settle(path, path.name)
+        finally:
+            if claim is not None:
+                claim.release()
+
+    spares.recover(folder, tidy)
+
+
+def _claim_of(path: Path) -> Claim | None:
+    """Take the right to write a project; returns None where it, or its folder, cannot be written."""
+    protected = path.exists() and not stat.S_IMODE(path.stat().st_mode) & 0o222
+    if protected or not (os.access(path.parent, os.W_OK) and (os.access(path, os.W_OK) or not path.exists())):
+        return None
+    try:
+        return Claim(path)
+    except OSError:
+        return None
 
 
 @contextmanager
-def sentences(name: str) -> Iterator[None]:
-    """Turn what SQLite and the reader say into a sentence about the file."""
+def _released_on_error(claim: Claim) -> Iterator[None]:
+    """Shed what a killed program left beside the file and open its descriptor; let go of it where that goes wrong."""
     try:
+        claim.shed_foreign_journal(_whole, _rolled_back)
+        claim.begin()
         yield
-    except DamagedError as error:
-        raise FormatError(f"{name} is damaged: {error}.", schema.DAMAGED) from error
-    except UnicodeError as error:
-        raise FormatError(f"{name} is damaged: a text in it cannot be read.", schema.DAMAGED) from error
-    except sqlite3.Error as error:
-        raise _told(error, name) from error
+    except BaseException:
+        claim.release()
+        raise
 
 
-def _told(error: sqlite3.Error, name: str) -> EngineError:
-    kind = getattr(error, "sqlite_errorname", "") or ""
-    if kind.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
-        return InUseError(f"{name} is open in another Retake.", "Close it there first.")
-    if kind.startswith("SQLITE_FULL"):
-        return EngineError(f"There is no room left on the disk for {name}.", "Make room; your work stays in memory.")
-    if kind.startswith(("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_IOERR", "SQLITE_PERM")):
-        return EngineError(f"{name} could not be written: {error}.", "Choose another folder, or make room.")
-    if kind.startswith("SQLITE_NOTADB"):
-        return FormatError(f"{name} is not a Retake project.", schema.NOT_OURS)
-    return FormatError(f"{name} is damaged.", schema.DAMAGED)
+@contextmanager
+def _replaced(path: Path) -> Iterator[tuple[Claim, Path]]:
+    """Give a temporary file that takes the place of a project, and the right to write it, which the caller keeps."""
+    try:
+        claim = Claim(path)
+    except OSError as error:
+        raise unwritten(path, error) from error
+    try:
+        _settle(claim, path)
+        with sentences(path.name), replacement(claim.path) as temporary:
+            yield claim, temporary
+    except BaseException:
+        claim.release()
+        raise
 
 
-def _connect(path: Path, name: str) -> sqlite3.Connection:
-    """Open a database for one program alone, believing nothing that it says of itself."""
-    with sentences(name):
-        address = f"{path.absolute().as_uri()}?mode=rw"
-        database = sqlite3.connect(address, uri=True, timeout=0, isolation_level=None, check_same_thread=False)
-        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_BLOB_BYTES)
-        database.execute("PRAGMA trusted_schema = OFF")
-        database.execute("PRAGMA cell_size_check = ON")
-        database.execute("PRAGMA locking_mode = EXCLUSIVE")
-    return database
+def _settle(claim: Claim, path: Path) -> None:
+    """Bring a project that is about to be replaced into its one file, since its log must not meet the new one."""
+    if claim.path.is_file():
+        claim.shed_foreign_journal(_whole, _rolled_back)
+        try:
+            settle(claim.path, path.name)
+        except FormatError:
+            if claim.path.with_name(f"{claim.path.name}-wal").exists():
+                raise  # a damaged project with its last steps beside it: whatever can be saved of it is kept
+            return
+    _clear_beside(claim.path)
 
 
-def _scrap(path: Path) -> sqlite3.Connection:
-    """Open an empty file to fill; what is cut short there is thrown away, so it needs no journal."""
-    database = sqlite3.connect(path, isolation_level=None)
-    database.execute("PRAGMA journal_mode = OFF")
-    return database
+def _attach(path: Path, contents: Contents, claim: Claim) -> Project:
+    """Open a file that has just been written, without reading it again."""
+    with _released_on_error(claim):
+        database = connect(claim.path, path.name)
+        keep_safe(database, path.name)
+        claim.note()
+    return Project(path, contents, (database, claim))
 
 
 def _read(database: sqlite3.Connection, path: Path) -> Contents:
@@ -221,27 +296,31 @@ def _read(database: sqlite3.Connection, path: Path) -> Contents:
         return rows.read_contents(database, Budget(held))
 
 
-def _attach(path: Path, contents: Contents) -> Project:
-    """Open a file that has just been written, without reading it again."""
-    database = _connect(path, path.name)
-    with sentences(path.name):
-        database.execute("PRAGMA journal_mode = WAL")
-        database.execute("PRAGMA synchronous = FULL")
-    return Project(path, contents, database)
+def _read_alone(copy: Path) -> Contents:
+    with closing(connect(copy, copy.name)) as database:
+        return _read(database, copy)
 
 
-def _settle(path: Path) -> None:
-    """Bring a project that is about to be replaced into its one file, since its log must not meet the new one."""
-    if path.is_file():
-        try:
-            with closing(_connect(path, path.name)) as database, sentences(path.name):
-                database.execute("SELECT count(*) FROM sqlite_master").fetchone()
-                database.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
-        except FormatError:
-            if path.with_name(f"{path.name}-wal").exists():
-                raise  # a damaged project with its last steps beside it: whatever can be saved of it is kept
-            return
-    _clear_beside(path)
+def _whole(path: Path) -> bool:
+    """Return whether a project can be read without what lies beside it."""
+    try:
+        with copied(path, logs=False) as copy:
+            _read_alone(copy)
+    except EngineError:
+        return False
+    return True
+
+
+def _rolled_back(path: Path, journal: Path) -> str:
+    """Return the head of a project as its journal would restore it; nothing where it cannot."""
+    try:
+        with copied(path, logs=False) as copy:
+            copy.with_name(copy.name + journal.name[journal.name.rindex("-") :]).write_bytes(journal.read_bytes())
+            settle(copy, path.name)
+            with copy.open("rb") as file:
+                return head_of(file.fileno())
+    except (EngineError, OSError):
+        return ""
 
 
 def _clear_beside(path: Path) -> None:
@@ -251,23 +330,4 @@ def _clear_beside(path: Path) -> None:
     except NotADirectoryError:
         return
     except OSError as error:
-        reason = (error.strerror or "unknown reason").lower()
-        raise EngineError(
-            f"{path.name} could not be written: {reason}.", "Choose another folder, or make room."
-        ) from error
-
-
-@contextmanager
-def _copied(path: Path) -> Iterator[Path]:
-    """Give a copy in a folder that can be written, with the steps that only the log has."""
-    with tempfile.TemporaryDirectory(prefix="retake") as folder:
-        copy = Path(folder) / path.name
-        try:
-            shutil.copyfile(path, copy)
-            log = path.with_name(f"{path.name}-wal")
-            if log.is_file():
-                shutil.copyfile(log, copy.with_name(log.name))
-        except OSError as error:
-            reason = (error.strerror or "unknown reason").lower()
-            raise FormatError(f"{path.name} could not be read: {reason}.") from error
-        yield copy
+        raise unwritten(path, error) from error

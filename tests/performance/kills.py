@@ -1,4 +1,4 @@
-"""Kills a scripted editing session at random moments and opens what it left: python -m tests.performance.kills 200."""
+"""Kills scripted sessions at random moments and opens what they left: python -m tests.performance.kills 200 [KIND ...]."""
 
 from __future__ import annotations
 
@@ -7,16 +7,24 @@ import multiprocessing
 import sys
 import tempfile
 import time
+from collections import Counter
 from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from engine.controls import CONTROLS
 from engine.project import Contents, Edit, Project, create, replay
 from engine.take import SHAPES, Take
+from tests.performance import sessions
+
+if TYPE_CHECKING:
+    from PySide6.QtCore import QCoreApplication
+
+    from app.session import Session
 
 LONGEST_S = 0.4  # of a session's life
 LATEST = 20  # edits after which a session begins to undo more than it does
@@ -39,7 +47,6 @@ def edit_until_killed(folder: Path, seed: int, tell: Connection, *, frames: int 
     from PySide6.QtCore import QCoreApplication
 
     from app.session import Session
-    from app.session.commands import EditCommand
     from app.session.keeper import Keeper
 
     application = QCoreApplication([])
@@ -59,20 +66,33 @@ def edit_until_killed(folder: Path, seed: int, tell: Connection, *, frames: int 
             tell.send(("doing", fingerprint(replace(now, position=position))))
             session.undo.setIndex(position)
         else:
-            start, length = int(rng.integers(0, FRAMES - 200)), int(rng.integers(1, 200))
-            weights, asked = rng.random((length, len(SHAPES))), rng.random((length, len(CONTROLS)))
-            lost = np.zeros(length, bool)
-            patch = SimpleNamespace(  # a Patch would load torch, hundreds of times
-                start=start, stop=start + length, weights=weights, asked=asked, reached=asked, lost=lost
-            )
-            patch.settled = lambda _, patch=patch: patch
-            command = EditCommand(session, patch, f"edit {session.undo.count()}")
-            edits = (*now.edits[: now.position], command.edit)
-            tell.send(("doing", fingerprint(replace(now, edits=edits, position=len(edits)))))
-            session.undo.push(command)
-        until = time.perf_counter() + rng.exponential(0.01)
-        while time.perf_counter() < until:
-            application.processEvents()
+            push(session, rng, tell)
+        wait(application, rng)
+
+
+def push(session: Session, rng: np.random.Generator, tell: Connection) -> None:
+    """Make one edit, telling first which state it leads to."""
+    from app.session.commands import EditCommand
+
+    now = session.contents()
+    start, length = int(rng.integers(0, FRAMES - 200)), int(rng.integers(1, 200))
+    weights, asked = rng.random((length, len(SHAPES))), rng.random((length, len(CONTROLS)))
+    lost = np.zeros(length, bool)
+    patch = SimpleNamespace(  # a Patch would load torch, hundreds of times
+        start=start, stop=start + length, weights=weights, asked=asked, reached=asked, lost=lost
+    )
+    patch.settled = lambda _: patch
+    command = EditCommand(session, patch, f"edit {session.undo.count()}")
+    edits = (*now.edits[: now.position], command.edit)
+    tell.send(("doing", fingerprint(replace(now, edits=edits, position=len(edits)))))
+    session.undo.push(command)
+
+
+def wait(application: QCoreApplication, rng: np.random.Generator) -> None:
+    """Let the session work for a moment."""
+    until = time.perf_counter() + rng.exponential(0.01)
+    while time.perf_counter() < until:
+        application.processEvents()
 
 
 def edit_and_save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
@@ -109,7 +129,7 @@ def save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
 def start(session: object, folder: Path, seed: int) -> tuple[multiprocessing.process.BaseProcess, Connection]:
     """Start a session in a process of its own, from a server that has imported everything already."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["app.session.keeper", "engine.project"])
+    context.set_forkserver_preload(["app.session.keeper", "engine.project", "engine.live.spool"])
     told, tell = context.Pipe(duplex=False)
     process = context.Process(target=session, args=(folder, seed, tell), daemon=True)
     process.start()
@@ -168,26 +188,70 @@ def may_be_found(messages: list[tuple[str, str]]) -> tuple[list[str], int]:
     return reached[safe:], reports
 
 
-SESSIONS = {"edit": edit_until_killed, "save": save_until_killed, "work": edit_and_save_until_killed}
+def edit_a_saved_project_until_killed(folder: Path, seed: int, tell: Connection) -> None:
+    """Edit a project that was saved, and go on whatever becomes of its file."""
+    from PySide6.QtCore import QCoreApplication
+
+    from app.session import Session
+    from app.session.keeper import Keeper
+
+    application, rng = QCoreApplication([]), np.random.default_rng(seed)
+    session = Session(Take(weights=rng.random((FRAMES, len(SHAPES))), fps=60.0, name="killed"))
+    keeper, saved = Keeper(session, folder), []
+    keeper.saved.connect(saved.append)
+    keeper.save_as(folder / "scene.retake")
+    while not saved:
+        application.processEvents()
+    keeper.kept.connect(lambda contents: tell.send(("kept", fingerprint(contents))))
+    keeper.failed.connect(lambda *sentence: tell.send(("told", " ".join(sentence))))
+    tell.send(("doing", fingerprint(session.contents())))
+    tell.send(("kept", fingerprint(session.contents())))
+    tell.send(("saved", ""))
+    while True:
+        push(session, rng, tell)
+        wait(application, rng)
+
+
+SESSIONS = {
+    "edit": edit_until_killed,
+    "save": save_until_killed,
+    "work": edit_and_save_until_killed,
+    "replace": edit_a_saved_project_until_killed,
+    "export": sessions.export_until_killed,
+    "record": sessions.record_until_killed,
+}
 
 
 def check(seed: int, folder: Path, kind: str) -> int:
-    """Kill one session and prove that nothing it had reported is lost; returns how many reports it had made."""
+    """Kill one session and prove that nothing it had reported is lost, and that nothing stray is left.
+
+    Returns how many reports it had made.
+    """
     rng = np.random.default_rng(seed)
     process, told = start(SESSIONS[kind], folder, seed)
-    longest_s = LONGEST_S if kind == "edit" else 4 * LONGEST_S
+    longest_s = 4 * LONGEST_S
+    new = b""
     try:
         messages = [told.recv()]
+        if kind == "replace":
+            while messages[-1][0] != "saved":
+                messages.append(told.recv())
+            messages += listen(told, float(rng.uniform(0, LONGEST_S)))
+            new = sessions.replace_by(folder / "scene.retake", sessions.newcomer(folder))
         messages += listen_to_saves(told, rng) if kind == "save" else listen(told, float(rng.uniform(0, longest_s)))
         messages += kill(process, told)
     finally:
         process.kill()
+    if new:
+        assert (folder / "scene.retake").read_bytes() == new, "the newcomer was written"
+    found = sessions.next_start(folder, content_of)
+    if kind == "export":
+        return sessions.exported(folder, messages)
+    if kind == "record":
+        return sessions.recorded(folder, messages)
     allowed, reports = may_be_found(messages)
-    paths = [folder / "saved.retake"] if kind == "save" else list(folder.glob("**/*.retake"))
-    assert len(paths) == 1 or (reports == 0 and not paths) or kind == "work", paths
-    found = [content_of(path) for path in paths]
     some = any(content in allowed for content in found)
-    assert some or (reports == 0 and not paths), f"seed {seed}: an edit that was reported as finished is gone"
+    assert some or (reports == 0 and not found), f"seed {seed}: an edit that was reported as finished is gone"
     return reports
 
 
@@ -200,16 +264,26 @@ def content_of(path: Path) -> str:
         opened.close()
 
 
-def main(times: int) -> None:
-    """Kill so many sessions, a third while they save and a third while they do both, and say what came of it."""
-    reports = []
-    for seed in range(times):
+def main(seeds: range, kinds: list[str]) -> None:
+    """Kill a session for each seed, each kind in turn, and say what came of it."""
+    reports, kinds = Counter[str](), kinds or list(SESSIONS)
+    losses = []
+    for done, seed in enumerate(seeds, 1):
+        kind = kinds[seed % len(kinds)]
         with tempfile.TemporaryDirectory() as folder:
-            reports.append(check(seed, Path(folder), list(SESSIONS)[seed % len(SESSIONS)]))
-    print(f"{times} kills, {sum(reports)} finished steps reported before them, none lost")
+            try:
+                reports[kind] += check(seed, Path(folder), kind)
+            except AssertionError as error:
+                losses.append(f"{kind} {seed}: {error}")
+                print(losses[-1], flush=True)
+        if done % 50 == 0:
+            print(f"{done} kills, reports {dict(reports)}, {len(losses)} losses or stray files", flush=True)
+    reported = sum(reports.values())
+    print(f"{len(seeds)} kills, {reported} finished steps reported before them, {len(losses)} losses or stray files")
 
 
 if __name__ == "__main__":
     from tests.performance.kills import main  # under its own name, as the sessions' processes know it
 
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 200)
+    first, _, stop = (sys.argv[1] if len(sys.argv) > 1 else "0:200").rpartition(":")
+    main(range(int(first or 0), int(stop)), sys.argv[2:])

@@ -166,7 +166,7 @@ def test_saving_moves_the_work_to_the_project_and_every_later_step_too(
     assert session.edited
     saved(qtbot, first, path)
     assert (first.path, session.path, session.edited) == (path, path, False)
-    assert first.left_over() == [] and list((tmp_path / "data" / "unsaved").iterdir()) == []
+    assert first.left_over() == [] and list((tmp_path / "data" / "unsaved").glob("*.retake")) == []
     kept(qtbot, first, lambda: push(session, 2))
     assert not session.edited  # it is safe in the user's own file
     first.close()

@@ -16,7 +16,7 @@ from engine.formats import read_take, write_take
 from engine.performance import demo
 from engine.project import Contents, Media, Note, Project, Span, replay, schema
 from engine.take import SHAPES, runs
-from tests.engine.project.projects import MARKS, reopened
+from tests.engine.project.projects import MARKS, reopened, same
 
 # A file as the first version wrote it. Never to be changed: there are such files.
 FIRST_VERSION = """
@@ -78,6 +78,9 @@ def test_a_file_of_the_first_version_opens_with_all_it_holds(contents: Contents,
     database.commit()
     database.close()
 
+    before = path.read_bytes()
+    assert same(Project.open(path, read_only=True).contents, Project.open(path, read_only=True).contents)
+    assert path.read_bytes() == before and [entry.name for entry in tmp_path.iterdir()] == ["old.retake"]
     found = reopened(path)
     np.testing.assert_array_equal(found.original.weights, take.weights)
     np.testing.assert_array_equal(found.edits[0].weights, edit.weights)

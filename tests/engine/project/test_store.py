@@ -142,10 +142,12 @@ def test_what_cannot_be_written_can_be_read_with_the_steps_that_only_its_log_has
 
 
 def left_by_a_kill(contents: Contents, folder: Path) -> Path:
-    """Make what a killed program leaves: a project whose last step only the log has."""
+    """Make what a kill of an earlier version left: a project whose last step only the log has."""
     elsewhere = folder.parent / f"{folder.name}-alive"
     elsewhere.mkdir()
     alive = project.create(elsewhere / "old.retake", contents)
+    alive._database.execute("PRAGMA journal_mode = WAL").fetchone()
+    alive._claim.note()
     alive.put(replace(contents, position=1))
     for name in ("old.retake", "old.retake-wal"):
         shutil.copyfile(elsewhere / name, folder / name)
@@ -273,3 +275,37 @@ def test_a_project_that_is_open_is_left_alone_by_others(contents: Contents, tmp_
         project.peek(path)
     project.delete(path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_project_is_read_beside_the_program_that_has_it_open_and_left_as_it_was(
+    contents: Contents, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.retake"
+    alive = project.create(path, contents)
+    alive.put(replace(contents, position=1))
+    before = {entry.name: entry.read_bytes() for entry in tmp_path.iterdir()}
+    opened = Project.open(path, read_only=True)
+    assert opened.read_only and opened.contents.position == 1
+    with pytest.raises(EngineError, match="cannot be written"):
+        opened.put(replace(opened.contents, position=0))
+    assert {entry.name: entry.read_bytes() for entry in tmp_path.iterdir()} == before
+    alive.put(contents)
+    alive.close()
+    assert same(reopened(path), contents)
+
+
+def test_a_project_that_is_written_while_it_is_read_is_read_whole(
+    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, copied = tmp_path / "a.retake", shutil.copyfile
+    alive = project.create(path, contents)
+    turns = iter(range(3))
+
+    def written_meanwhile(source: Path, target: Path) -> None:
+        copied(source, target)
+        if str(source).endswith(".retake") and (turn := next(turns, None)) is not None:
+            alive.put(replace(alive.contents, position=turn))
+
+    monkeypatch.setattr("engine.project.database.shutil.copyfile", written_meanwhile)
+    assert Project.open(path, read_only=True).contents.position == 2
+    alive.close()
