@@ -17,11 +17,8 @@ from app.session import Session
 from app.session.keeper import Keeper
 from app.session.opening import Opened, Opening, Wish
 from app.settings import Settings
-<<<<<<< HEAD
-from app.widgets.text import message_box
-=======
 from app.widgets.saving import ask_where, may_replace
->>>>>>> wt-store
+from app.widgets.text import message_box
 from engine.errors import EngineError
 from engine.formats import FORMATS, cues, livelink_folder, write_take
 from engine.formats.atomic import sweep

@@ -8,11 +8,8 @@ from typing import Annotated, cast
 import typer
 
 from app.cli import blind, character, clean, fill, flags, review, smooth, spacetime, tables, takes, training
-<<<<<<< HEAD
-from app.printing import remark, say
-=======
 from app.cli.outputs import protect_inputs
->>>>>>> wt-store
+from app.printing import remark, say
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 

@@ -147,12 +147,8 @@ def _tell(listener: Listener, seconds: float | None, spool: Spool | None, *, as_
             try:
                 spool.save()
             except EngineError as error:
-<<<<<<< HEAD
-                remark(f"{error} The recording goes on in memory.")
-=======
                 if not failed_before:
-                    errors.print(f"{error} The recording goes on in memory.", highlight=False)
->>>>>>> wt-store
+                    remark(f"{error} The recording goes on in memory.")
         status = listener.status()
         listener.frames()
         latency = None if status.latency_p95_ms != status.latency_p95_ms else round(status.latency_p95_ms, 3)

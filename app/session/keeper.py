@@ -17,68 +17,11 @@ from app.session.opening import Opened
 from app.session.session import Change, Session
 from engine import project
 from engine.errors import EngineError
-<<<<<<< HEAD
-from engine.formats import read_take
-from engine.formats.reading import Reading
-from engine.project import Contents, Project
-from engine.take import timecode
-from engine.words import counted
-=======
 from engine.project import Contents, DisplacedError, Project
->>>>>>> wt-store
 
 log = logging.getLogger(__name__)
 PATIENCE_S = 0.3  # a wait that nobody notices when a take is closed
-<<<<<<< HEAD
-
-
-def unsaved_folder() -> Path:
-    """Return the folder for unsaved work."""
-    return Path(platformdirs.user_data_dir(NAME, appauthor=False)) / "unsaved"
-
-
-@dataclass(frozen=True)
-class LeftOver:
-    """Unsaved work that a program which ended early left behind."""
-
-    path: Path
-    name: str
-    edits: int
-    changed: datetime
-    length: str
-
-    @property
-    def sentence(self) -> str:
-        """What to call it in a list."""
-        steps = counted(self.edits, "edit")
-        return f"{self.name} ({self.length}), {steps}, {self.changed.astimezone():%d %b %Y %H:%M}"
-
-
-@dataclass(frozen=True, eq=False)
-class _Kept:
-    """The file that each step goes to, and whether it is the user's own or unsaved work."""
-
-    project: Project
-    saved: bool
-
-
-@dataclass(frozen=True, eq=False)
-class _Saving:
-    """A wish to save to a path."""
-
-    path: Path
-
-
-@contextmanager
-def _as_unsaved_work(path: Path) -> Iterator[None]:
-    """Let an error speak of unsaved work: the name of its file says nothing to the user."""
-    try:
-        yield
-    except EngineError as error:
-        raise EngineError(error.sentence.replace(path.name, "unsaved work"), error.advice) from error
-=======
 LOOK_MS = 3000  # between looks whether the project is still the one that was opened
->>>>>>> wt-store
 
 
 class Keeper(QObject):

@@ -22,6 +22,7 @@ from engine.project import Contents
 from engine.take import timecode
 
 log = logging.getLogger(__name__)
+from engine.words import counted
 
 
 def unsaved_folder() -> Path:
@@ -42,7 +43,7 @@ class LeftOver:
     @property
     def sentence(self) -> str:
         """What to call it in a list."""
-        steps = "1 edit" if self.edits == 1 else f"{self.edits} edits"
+        steps = counted(self.edits, "edit")
         return f"{self.name} ({self.length}), {steps}, {self.changed.astimezone():%d %b %Y %H:%M}"
 
 

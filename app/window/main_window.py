@@ -121,8 +121,7 @@ class MainWindow(QMainWindow):
         self.notes = NotesSection(self.session)
         self.flags = FlagsSection(self.session)
         self.marks, self.views = MarkActions(self.session, self.notes, self.spans), ViewActions(self.preview)
-        self.retarget = RetargetActions(self.session, self)
-        self.review = ReviewActions(self.session, self)
+        self.retarget, self.review = RetargetActions(self.session, self), ReviewActions(self.session, self)
         sections = (
             self.brush,
             self.value,
