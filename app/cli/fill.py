@@ -65,7 +65,7 @@ def fill(
         pins=merged_pins([_pin(text) for text in pin or []]),
         guide=read_take(guide) if guide else None,
         guide_offset=guide_offset,
-        visemes=begun_at(read_cues(visemes), visemes_offset) if visemes else (),
+        visemes=begun_at(read_cues(visemes, warn), visemes_offset) if visemes else (),
         controls=_controls(control or [], spans),
         style=cast(Style, style),  # checked with the rest
         lost=lost,
@@ -75,6 +75,11 @@ def fill(
         path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
         write_take(one, path)
         typer.echo(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
+
+
+def warn(sentence: str) -> None:
+    """Say what the user should hear beside the result."""
+    typer.echo(sentence, err=True)
 
 
 def _said(spans: list[tuple[int, int]]) -> str:
