@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from app.cli import blind, character, clean, fill, flags, smooth, spacetime, tables, takes, training
+from app.cli.checks import check_all
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 
@@ -27,6 +28,7 @@ def build() -> typer.Typer:
     app.callback()(_start)
     for family in FAMILIES:
         family.register(app)
+    check_all(app)
     return app
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
@@ -117,9 +118,12 @@ def _weight(text: str) -> tuple[str, float]:
 
 def _number(text: str) -> float:
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
         raise EditError(f"{text[:40]!r} is not a number.") from None
+    if not math.isfinite(number):
+        raise EditError(f"{text[:40]!r} is not a finite number.")
+    return number
 
 
 def _controls(texts: list[str], spans: list[tuple[int, int]]) -> dict[str, Array | float]:
@@ -141,9 +145,11 @@ def _curve(text: str, spans: list[tuple[int, int]]) -> Array | float:
     if os.path.exists(text):
         try:
             numbers: Array = np.array([float(word) for word in read_text(Path(text)).split()])
-            return numbers
         except ValueError:
             raise FormatError(f"{Path(text).name} is not a list of numbers.") from None
+        if np.isinf(numbers).any() or np.isnan(numbers).all():  # nan asks for nothing at its frame
+            raise FormatError(f"{Path(text).name} holds numbers that are not finite, or none.")
+        return numbers
     if ":" not in text:
         return _number(text)
     if len(spans) > 1:

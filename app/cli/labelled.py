@@ -41,6 +41,11 @@ def retarget(performance: Source, character: Path | None, labels: Path | None) -
         raise EditError("There are no labelled frames.", "Name a file of them with --labels; --suggest says which.")
     asked = _read(labels)
     path = character or asked.target
+    if path is None and asked.elsewhere:
+        name = asked.elsewhere.replace("\\", "/").rpartition("/")[2][:60]
+        raise EditError(
+            f"{labels.name} is for the head {name!r}, which does not lie beside it.", "Name the head with --character."
+        )
     target = bundled() if path is None else character_of(path)
     guess = performance.take if performance.take.weights.any() else carry(performance, target)
     poses: dict[int, Mapping[str, float] | Array] = dict(asked.labels)
