@@ -204,9 +204,12 @@ class LiveSection(Section):
             return
         self._save()
         status = self._listener.status()
-        if self.subjects.count() != len(status.subjects):
+        if [self.subjects.itemText(index) for index in range(self.subjects.count())] != list(status.subjects):
             self.subjects.clear()
             self.subjects.addItems(list(status.subjects))
+        followed = self.subjects.findText(self._listener.stream.subject or "")
+        if followed >= 0 and not self.subjects.view().isVisible():
+            self.subjects.setCurrentIndex(followed)
         lines = [f"{status.frames:,} frames"]
         if np.isfinite(status.latency_p95_ms):
             lines.append(f"clean {status.latency_p95_ms:.1f} ms after arrival")
