@@ -13,7 +13,7 @@ from pathlib import Path
 from engine.errors import EngineError, FormatError
 from engine.formats.atomic import replacement
 from engine.formats.content import require_file
-from engine.project import rows, schema
+from engine.project import held, rows, schema
 from engine.project.blobs import Budget, DamagedError
 from engine.project.records import Contents, Summary
 
@@ -41,6 +41,7 @@ class Project:
         self.path = path
         self._contents = contents
         self._database = database
+        self._held = held.hold(path) if database is not None else None
 
     @classmethod
     def open(cls, path: Path) -> Project:
@@ -118,6 +119,7 @@ class Project:
         if self._database is not None:
             self._database.close()
             self._database = None
+            held.let_go(self._held)
 
     def _writable(self) -> sqlite3.Connection:
         if self._database is None:
