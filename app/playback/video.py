@@ -158,7 +158,9 @@ def _small(frame: av.VideoFrame, pixel_aspect: Fraction | None) -> Picture:
     aspect = float(pixel_aspect) if pixel_aspect and 1 / WIDEST <= pixel_aspect <= WIDEST else 1.0
     scale = min(1.0, SHOWN_PX / max(frame.width * aspect, frame.height))
     width, height = (max(2, round(side * scale)) for side in (frame.width * aspect, frame.height))
-    picture = frame.reformat(width=width, height=height, format="rgb24").to_ndarray()
+    picture: Picture = (
+        frame.reformat(width=width, height=height, format="rgb24").to_ndarray().astype(np.uint8, copy=False)
+    )
     return np.ascontiguousarray(_upright(picture, frame.side_data.get("DISPLAYMATRIX")))
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import lzma
+import math
 import struct
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Iterable
@@ -13,11 +16,25 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
+from engine.formats.budget import BUDGET
 from engine.formats.content import require_file
 
 MAX_BYTES = 4 << 30
 # What numpy and zipfile raise over damaged bytes; RuntimeError stands for encryption.
-FAULTS = (OSError, KeyError, ValueError, EOFError, RuntimeError, MemoryError, struct.error, zlib.error)
+FAULTS = (
+    *(
+        OSError,
+        EOFError,
+        LookupError,
+        ValueError,
+        TypeError,
+        RuntimeError,
+        ArithmeticError,
+        MemoryError,
+        AttributeError,
+    ),
+    *(struct.error, zlib.error, lzma.LZMAError, tokenize.TokenError, SyntaxError),
+)
 DAMAGED = (*FAULTS, zipfile.BadZipFile)
 
 
@@ -52,5 +69,7 @@ def _require_held(archive: zipfile.ZipFile, member: str, path: Path) -> None:
     with archive.open(member) as file:
         old = np.lib.format.read_magic(file) == (1, 0)
         shape, _, dtype = (np.lib.format.read_array_header_1_0 if old else np.lib.format.read_array_header_2_0)(file)
-    if int(np.prod(shape, dtype=object)) * dtype.itemsize > archive.getinfo(member).file_size:
+    count = math.prod(int(size) for size in shape)
+    if count * max(1, dtype.itemsize) > archive.getinfo(member).file_size:
         raise FormatError(f"{path.name} declares more data than it holds.")
+    BUDGET.require(path.name, bytes=count * dtype.itemsize, values=count)

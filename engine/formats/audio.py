@@ -240,6 +240,8 @@ def _filmed(path: Path) -> Iterator[tuple[int, Samples]]:
         if not file.streams.audio:
             raise FormatError(f"{path.name} has no sound.", EXPECTED)
         track = file.streams.audio[0]
+        if track.codec_context is None or not track.time_base:
+            raise FormatError(f"The sound of {path.name} is in a format that cannot be decoded here.", EXPECTED)
         if not MIN_RATE <= track.rate <= MAX_RATE:
             raise FormatError(f"{path.name} gives its rate as {track.rate:,} Hz, which cannot be played.", EXPECTED)
         layout = "stereo" if track.channels == STEREO else "mono"
@@ -321,7 +323,13 @@ class _Store:
         self._channels = block.shape[1] if block.ndim > 1 else 1
         if self._count > MAX_SAMPLES:
             raise FormatError(f"{path.name} is longer than Retake plays.", "Cut out the part that belongs to the take.")
-        self._file.write(np.ascontiguousarray(block).data)
+        try:
+            self._file.write(np.ascontiguousarray(block).data)
+        except OSError as error:
+            reason = (error.strerror or "unknown reason").lower()
+            raise FormatError(
+                f"{path.name} could not be decoded: its samples found no room, {reason}.", "Make room on the disk."
+            ) from error
 
     def finished(self) -> Samples:
         """Return all samples, (n,) or (n, 2)."""

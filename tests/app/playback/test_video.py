@@ -186,3 +186,10 @@ def test_pixels_that_are_not_square_are_drawn_as_wide_as_they_are(tmp_path: Path
     reader = Video(tmp_path / "a.mp4")
     assert reader.frame_at(0.0).picture.shape == (480, 240, 3)
     reader.close()
+
+
+def test_a_picture_that_no_decoder_here_knows_is_a_sentence(tmp_path: Path) -> None:
+    path = film(tmp_path / "a.mp4", STEADY_MS[:3])
+    path.write_bytes(path.read_bytes().replace(b"avc1", b"zzzz"))
+    with pytest.raises(FormatError, match=r"a\.mp4"):
+        Video(path)
