@@ -50,9 +50,15 @@ def sound_only(path: Path, samples: np.ndarray | None = None, rate: int = 48_000
 
 
 def flash_and_click(
-    path: Path, *, at_s: float = 2.0, sound_from_s: float = 0.0, picture_from_s: float = 0.0, rate: int = 48_000
+    path: Path,
+    *,
+    at_s: float = 2.0,
+    sound_from_s: float = 0.0,
+    picture_from_s: float = 0.0,
+    rate: int = 48_000,
+    length_s: float = 3.0,
 ) -> Path:
-    """Write a film of 3 s at 25 frames per second whose picture flashes and whose sound clicks at a time of the film.
+    """Write a film of 25 frames per second whose picture flashes and whose sound clicks at a time of the film.
 
     Either track may begin later than the film does.
     """
@@ -60,12 +66,12 @@ def flash_and_click(
         picture = file.add_stream("libx264", rate=25, options={"crf": "10"})
         picture.width, picture.height, picture.pix_fmt = 64, 48, "yuv420p"
         sound = file.add_stream("aac", rate=rate, layout="mono")
-        for number in range(round(25 * picture_from_s), 75):
+        for number in range(round(25 * picture_from_s), round(25 * length_s)):
             level = 255 if number == round(25 * at_s) else 0
             frame = av.VideoFrame.from_ndarray(np.full((48, 64, 3), level, np.uint8), format="rgb24")
             frame.pts, frame.time_base = number, Fraction(1, 25)
             file.mux(picture.encode(frame))
-        samples = np.zeros(3 * rate, np.float32)
+        samples = np.zeros(round(length_s * rate), np.float32)
         samples[round(at_s * rate) :][:48] = 0.9
         for at in range(round(sound_from_s * rate), len(samples), 1024):
             block = av.AudioFrame.from_ndarray(samples[None, at : at + 1024], format="fltp", layout="mono")
