@@ -12,15 +12,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from engine.errors import AssetError, EngineError
+from engine.errors import AssetError, EditError, EngineError
 from engine.formats.archive import arrays_of
 from engine.formats.atomic import write_bytes
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
 BUNDLED = Path(__file__).parent.parent / "assets" / "head" / "head.npz"
+SPLIT = ("split", "split_triangles")
 REQUIRED = ("vertices", "faces", "shape_names", "deltas", "colours", "landmark_names", "landmark_vertices")
 FARTHEST_MM = 1e6
 MAX_NAME = 80  # letters shown on screen
+MAX_NAMES = 10_000  # of shapes, of landmarks
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 
 
@@ -37,6 +39,8 @@ class Character:
     landmarks : vertex index by name
     mirror : (vertices,) int32, each vertex's mirror image; empty where the mesh has none
     name : what to call it on screen
+    split : (vertices of the file it came from,) int32, which vertex each is here; empty where they are the same
+    split_triangles : (triangles of that file, 3) int32, of its own vertices; empty where they are the same
     """
 
     neutral: npt.NDArray[np.float32]
@@ -46,10 +50,15 @@ class Character:
     landmarks: dict[str, int]
     name: str = "Retake head"
     mirror: npt.NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+    split: npt.NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+    split_triangles: npt.NDArray[np.int32] = field(default_factory=lambda: np.zeros((0, 3), np.int32))
 
     @cached_property
     def _moving(self) -> npt.NDArray[np.int64]:
-        return np.flatnonzero(np.abs(self.deltas).max(axis=(0, 2)) > 0)
+        moving = np.zeros(len(self.neutral), bool)
+        for delta in self.deltas:  # all at once would take as much memory again
+            moving |= delta.any(axis=1)
+        return np.flatnonzero(moving)
 
     @cached_property
     def _basis(self) -> npt.NDArray[np.float32]:
@@ -62,6 +71,26 @@ class Character:
         posed = self.neutral.copy()
         posed[self._moving] += (used @ self._basis).reshape(-1, 3)
         return posed
+
+    @property
+    def triangles_in_file(self) -> npt.NDArray[np.int32]:
+        """The triangles of the file's own vertices, (t, 3)."""
+        return self.split_triangles if len(self.split) else self.triangles
+
+    def as_in_file(self, vertices: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return values of vertices, (..., vertices, 3), for each vertex of the file the head came from."""
+        return vertices[..., self.split, :] if len(self.split) else vertices
+
+    def vertex_of(self, number: int) -> int:
+        """Return the vertex that a vertex of the file is here; raises `EditError` where the file has no such number."""
+        count = len(self.split) or len(self.neutral)
+        if not 0 <= number < count:
+            raise EditError(f"{self.name} has no vertex {number}.", f"It has {count:,}, counted from 0.")
+        return int(self.split[number]) if len(self.split) else number
+
+    def number_of(self, vertex: int) -> int:
+        """Return the number that the file has for a vertex, the first where it has several."""
+        return int(np.argmax(self.split == vertex)) if len(self.split) else vertex
 
     def landmark_positions(self, names: Sequence[str]) -> tuple[Array, Array]:
         """Return the neutral (n, 3) and the deltas (52, n, 3) of named landmarks, float64, mm."""
@@ -85,7 +114,7 @@ def drawable(weights: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
 def load(path: Path = BUNDLED) -> Character:
     """Read a character written by `save`; raises `AssetError` where the file is missing or damaged."""
     try:
-        return _sound(_stored(arrays_of(path, (*REQUIRED, "name", "mirror"))))
+        return _sound(_stored(arrays_of(path, (*REQUIRED, "name", "mirror", *SPLIT))))
     except (EngineError, KeyError, ValueError, TypeError, IndexError, OverflowError) as error:
         raise AssetError(
             f"The character file {path.name} is missing or damaged.",
@@ -94,6 +123,8 @@ def load(path: Path = BUNDLED) -> Character:
 
 
 def _stored(arrays: Mapping[str, npt.NDArray[Any]]) -> Character:
+    if max(arrays["shape_names"].size, arrays["landmark_names"].size) > MAX_NAMES:
+        raise ValueError("more names than a head has")
     vertices = arrays["vertices"].astype(np.float32, casting="same_kind")
     deltas = np.zeros((len(SHAPES), *vertices.shape), np.float32)
     for name, delta in zip(arrays["shape_names"], arrays["deltas"], strict=True):
@@ -107,6 +138,7 @@ def _stored(arrays: Mapping[str, npt.NDArray[Any]]) -> Character:
         {str(name): int(vertex) for name, vertex in pairs},
         name=str(arrays["name"])[:MAX_NAME] if "name" in arrays else Character.name,
         mirror=arrays.get("mirror", np.zeros(0)).astype(np.int32, casting="unsafe"),
+        **{name: arrays[name].astype(np.int32, casting="same_kind") for name in SPLIT if name in arrays},
     )
 
 
@@ -114,11 +146,16 @@ def _sound(made: Character) -> Character:
     """Return a character whose arrays belong together; raises `ValueError` for another."""
     count = len(made.neutral)
     landmarks = np.array(list(made.landmarks.values()), np.int64)
-    indices = np.concatenate([made.triangles.ravel(), made.mirror, landmarks])
+    indices = np.concatenate([made.triangles.ravel(), made.mirror, made.split.ravel(), landmarks])
     shapes = made.neutral.shape == made.colours.shape == (count, 3) and made.triangles.shape[1:] == (3,)
-    places = [made.neutral, made.deltas]
+    places = [made.neutral, *made.deltas]
     if not (count and len(made.triangles) and shapes and made.mirror.shape in ((0,), (count,))):
         raise ValueError("arrays whose sizes do not belong together")
+    corners = made.split_triangles
+    if made.split.ndim != 1 or corners.shape[1:] != (3,) or (len(made.split) > 0) != (len(corners) > 0):
+        raise ValueError("a map of vertices that does not belong to its faces")
+    if len(corners) and not 0 <= corners.min() <= corners.max() < len(made.split):
+        raise ValueError("a face of the file with a vertex that is not there")
     if not all(bool((np.abs(place) < FARTHEST_MM).all()) for place in places):
         raise ValueError("a place that is not finite, or further away than a head can be")
     if not 0 <= indices.min() <= indices.max() < count:
@@ -142,6 +179,7 @@ def save(character: Character, path: Path) -> None:
         landmark_names=np.array(list(character.landmarks)),
         landmark_vertices=np.array(list(character.landmarks.values()), np.int32),
         mirror=character.mirror,
+        **({name: getattr(character, name) for name in SPLIT} if len(character.split) else {}),
         name=np.array(character.name),
     )
     write_bytes(path, [stored.getvalue()])

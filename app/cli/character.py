@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,14 +19,19 @@ Names = Annotated[
 ]
 Landmarks = Annotated[list[str] | None, typer.Option("--landmark", help="Place a landmark by hand: name=vertex.")]
 Unit = Annotated[str | None, typer.Option(help="The file's unit, mm, cm, m or in; detected otherwise.")]
-Up = Annotated[str | None, typer.Option(help="The file's upward axis, y or z; detected otherwise.")]
+Up = Annotated[str | None, typer.Option(help="The file's upward axis: y, z, x, -y, -z or -x; detected otherwise.")]
+Facing = Annotated[
+    float | None,
+    typer.Option(help="Degrees that the face is turned to its left, from z, or from -y with z up; detected otherwise."),
+]
 
 
 def import_(
-    path: Annotated[Path, typer.Argument(help="A glTF or GLB file, a folder of OBJ files, or an ICT-FaceKit.")],
+    path: Annotated[Path, typer.Argument(help="A glTF, GLB or VRM file, a folder of OBJ files, or an ICT-FaceKit.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Where the character is written.")],
     unit: Unit = None,
     up: Up = None,
+    facing: Facing = None,
     names: Names = None,
     landmarks: Landmarks = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -34,13 +40,15 @@ def import_(
     from app.cli.tables import show
     from engine.character import save
 
-    made = imported(path, unit=unit, up=up, names=names or [], landmarks=landmarks or [])
+    made = imported(
+        path, unit=unit, up=up, facing=facing, names=names or [], landmarks=landmarks or []
+    )
     save(made.character, out)
     if as_json:
         print(json.dumps(_summary(made)))
         return
     rows = [
-        {"in the file": row.source, "shape": row.shape, "likeness": row.likeness, "taken": row.sure}
+        {"in the file": row.source, "shape": row.shape if row.sure else "", "how": row.how, "likeness": row.likeness}
         for row in made.matches
     ]
     show(path.name, rows, as_json=False)
@@ -61,34 +69,31 @@ def landmarks_(
     from engine.formats.characters.landmarks import with_landmarks
     from engine.formats.characters.opening import character_of
 
-    places = {name: _vertex(name, vertex) for name, vertex in _pairs(landmarks or []).items()}
-    character, away_mm = with_landmarks(character_of(path), places)
+    head = character_of(path)
+    places = {name: head.vertex_of(_vertex(name, vertex)) for name, vertex in _pairs(landmarks or []).items()}
+    character, away_mm = with_landmarks(head, places)
     save(character, out)
     rows = [
-        {"landmark": name, "vertex": vertex, "away_mm": away_mm[name], "by_hand": name in places}
+        {"landmark": name, "vertex": character.number_of(vertex), "away_mm": away_mm[name], "by_hand": name in places}
         for name, vertex in character.landmarks.items()
     ]
     show(path.name, rows, as_json=as_json)
 
 
-def imported(path: Path, *, unit: str | None, up: str | None, names: list[str], landmarks: list[str]) -> Import:
+def imported(
+    path: Path,
+    *,
+    unit: str | None = None,
+    up: str | None = None,
+    facing: float | None = None,
+    names: Sequence[str] = (),
+    landmarks: Sequence[str] = (),
+) -> Import:
     """Read a head and correct what was detected; raises `EngineError`."""
-    from engine.formats.characters import read
-    from engine.formats.characters.assemble import UNITS_MM, UP, Frame, assemble, detect_frame
-    from engine.formats.characters.names import corrected, match_names
+    from engine.formats.characters.reading import Reading, import_head
 
-    for value, known, what in ((unit, tuple(UNITS_MM), "unit"), (up, UP, "upward axis")):
-        if value is not None and value not in known:
-            raise EditError(f"There is no {what} called {value!r}.", f"Use one of: {', '.join(known)}.")
-    raw = read(path)
-    found = detect_frame(raw)
     places = {name: _vertex(name, vertex) for name, vertex in _pairs(landmarks).items()}
-    return assemble(
-        raw,
-        frame=Frame(unit or found.unit, up or found.up),
-        matches=corrected(match_names(raw.shapes), _pairs(names)),
-        landmarks=places,
-    )
+    return import_head(path, Reading(unit or "", up or "", facing, _pairs(names)), places)
 
 
 def _summary(made: Import) -> dict[str, object]:
@@ -96,14 +101,17 @@ def _summary(made: Import) -> dict[str, object]:
         "vertices": len(made.character.neutral),
         "unit": made.frame.unit,
         "up": made.frame.up,
-        "shapes": [{"source": row.source, "shape": row.shape, "likeness": row.likeness} for row in made.matches],
+        "facing_deg": made.frame.facing_deg,
+        "shapes": [
+            {"source": row.source, "shape": row.shape, "likeness": row.likeness, "how": row.how} for row in made.matches
+        ],
         "landmarks": made.character.landmarks,
         "landmark_mm": made.landmark_mm,
         "notices": list(made.notices),
     }
 
 
-def _pairs(texts: list[str]) -> dict[str, str]:
+def _pairs(texts: Sequence[str]) -> dict[str, str]:
     pairs = {}
     for text in texts:
         name, equals, value = text.partition("=")

@@ -15,6 +15,7 @@ from app.preview.lighting import Lighting, to_linear
 from app.preview.parts import eyeballs, part_of, shell_and_rest
 from engine.character import Character
 from engine.errors import EngineError
+from engine.framing import framed
 from engine.take import Array
 
 if sys.platform == "linux":
@@ -24,7 +25,6 @@ Triangles = npt.NDArray[np.int32]  # (n, 3)
 Picture = npt.NDArray[np.uint8]  # (height, width, 3) sRGB
 GROUND = (0x23, 0x27, 0x2E)
 _GROUND = np.array(GROUND, np.float32) / 255.0
-BELOW_CHIN = 0.2  # parts of the way from chin to crown that are framed under the chin
 NECK_FADE = 0.3  # parts of the head's height over which the neck's cut end dissolves into the ground
 SAMPLES = 4
 HEAT_FULL_MM = 10.0
@@ -202,15 +202,6 @@ class Renderer:
     def close(self) -> None:
         """Give back what OpenGL holds."""
         self._target.delete()
-
-
-def framed(character: Character) -> tuple[Array, Array]:
-    """Return the box to frame, from a little under the chin to the crown; all of a character without that landmark."""
-    points = character.neutral.astype(float)
-    if "chin" in character.landmarks:
-        chin, crown = float(points[character.landmarks["chin"], 1]), float(points[:, 1].max())
-        points = points[points[:, 1] >= chin - BELOW_CHIN * (crown - chin)]  # shoulders would make the face small
-    return points.min(axis=0), points.max(axis=0)
 
 
 def _pyrender() -> Any:

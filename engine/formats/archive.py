@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import lzma
-import math
 import struct
 import tokenize
 import zipfile
 import zlib
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,20 +19,10 @@ from engine.errors import FormatError
 from engine.formats.budget import BUDGET
 from engine.formats.content import require_file
 
-MAX_BYTES = 4 << 30
+MAX_BYTES = 512 << 20  # of all arrays that are read, unpacked; zeros are packed a thousandfold
 # What numpy and zipfile raise over damaged bytes; RuntimeError stands for encryption.
 FAULTS = (
-    *(
-        OSError,
-        EOFError,
-        LookupError,
-        ValueError,
-        TypeError,
-        RuntimeError,
-        ArithmeticError,
-        MemoryError,
-        AttributeError,
-    ),
+    *(OSError, EOFError, LookupError, ValueError, TypeError, RuntimeError, ArithmeticError, MemoryError, AttributeError),
     *(struct.error, zlib.error, lzma.LZMAError, tokenize.TokenError, SyntaxError),
 )
 DAMAGED = (*FAULTS, zipfile.BadZipFile)
@@ -54,22 +44,28 @@ def arrays_of(path: Path, wanted: Iterable[str]) -> dict[str, npt.NDArray[Any]]:
     try:
         with zipfile.ZipFile(path) as archive:
             held = [name for name in wanted if f"{name}.npy" in archive.namelist()]
-            if sum(archive.getinfo(f"{name}.npy").file_size for name in held) > MAX_BYTES:
-                raise FormatError(f"{path.name} declares more data than a character can hold.")
+            left = replace(BUDGET, bytes=MAX_BYTES)
+            left.require(path.name, bytes=sum(archive.getinfo(f"{name}.npy").file_size for name in held))
             for name in held:
-                _require_held(archive, f"{name}.npy", path)
+                left = left.spend(path.name, values=_declared(archive, f"{name}.npy", path))
         with np.load(path, allow_pickle=False) as stored:
             return {name: np.asarray(stored[name]) for name in held}
     except DAMAGED as error:
         raise FormatError(f"{path.name} is damaged.") from error
 
 
-def _require_held(archive: zipfile.ZipFile, member: str, path: Path) -> None:
-    """Refuse an array that would take more memory than its bytes fill."""
+def _declared(archive: zipfile.ZipFile, member: str, path: Path) -> int:
+    """Return how many values an array declares; raises `FormatError` where its bytes do not fill them.
+
+    A value without width, such as a text of no letters, fills no bytes in any number: it is refused where there are more
+    than the bytes of its file.
+    """
     with archive.open(member) as file:
         old = np.lib.format.read_magic(file) == (1, 0)
         shape, _, dtype = (np.lib.format.read_array_header_1_0 if old else np.lib.format.read_array_header_2_0)(file)
-    count = math.prod(int(size) for size in shape)
-    if count * max(1, dtype.itemsize) > archive.getinfo(member).file_size:
+    count = int(np.prod(shape, dtype=object))
+    if dtype.subdtype is not None or dtype.names is not None:
+        raise FormatError(f"{path.name} holds tables where a character has numbers.")
+    if min(shape, default=0) < 0 or count * max(dtype.itemsize, 1) > archive.getinfo(member).file_size:
         raise FormatError(f"{path.name} declares more data than it holds.")
-    BUDGET.require(path.name, bytes=count * dtype.itemsize, values=count)
+    return count

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.errors import EditError
+from engine.formats.budget import BUDGET
 from engine.take import Array
+
+CAPTURE_BUDGET = replace(BUDGET, values=40_000_000)  # 41 markers at 60 frames per second for an hour and a half
 
 FARTHEST_MM = 1e8
 SLOWEST_FPS, FASTEST_FPS = 0.01, 10_000.0
@@ -36,9 +41,9 @@ class Markers:
     def __post_init__(self) -> None:
         if self.positions.ndim != 3 or self.positions.shape[1:] != (len(self.names), 3) or not len(self.positions):
             raise EditError("A capture needs at least one frame and three coordinates for each marker.")
-        twice = [name for index, name in enumerate(self.names) if name in self.names[:index]]
+        twice = [name for name, count in Counter(self.names).items() if count > 1]
         if twice:
-            raise EditError(f"The marker {twice[0]!r} is there twice.", "Rename or remove one of the two.")
+            raise EditError(f"The marker {twice[0][:40]!r} is there twice.", "Rename or remove one of the two.")
         if (np.abs(self.positions) > FARTHEST_MM).any():
             raise EditError("A marker is further away than a face can be.", "Check the unit of the file.")
         if not SLOWEST_FPS <= self.fps <= FASTEST_FPS:
@@ -49,6 +54,28 @@ class Markers:
 
     def __len__(self) -> int:
         return len(self.positions)
+
+
+def each_once(names: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return names with a number behind those that were there before, and a sentence where there were any.
+
+    A marker without a name is called by its place, such as marker 7.
+    """
+    taken, found = {name.strip() for name in names}, []
+    seen: set[str] = set()
+    doubled = []
+    for place, given in enumerate(names, 1):
+        name = given.strip() or f"marker {place}"
+        if name in seen:
+            doubled.append(name)
+            number = 2
+            while f"{name} {number}" in seen or f"{name} {number}" in taken:
+                number += 1
+            name = f"{name} {number}"
+        seen.add(name)
+        found.append(name)
+    said = f"{len(doubled)} markers have a name that another has too, such as {doubled[0][:40]}: numbered." if doubled else ""
+    return tuple(found), (said,) if said else ()
 
 
 def unit_by_size(positions: Array) -> tuple[str, str]:

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from engine.errors import FormatError
-from engine.formats.capture import TO_MM, Markers
+from engine.formats.capture import CAPTURE_BUDGET, TO_MM, Markers, each_once
 from engine.formats.content import require_file, unread
 
 EXPECTED = "Retake reads C3D files with labelled points."
 HEADER_BYTES = 512
+SGI = 86  # its number among the processors, INTEL 84 and DEC 85
+MOST_LISTS = 64  # of labels: 16,000 points
 SMALLEST_POINT = 8  # bytes: four 16-bit numbers
 
 
@@ -22,12 +24,16 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     _check_sizes(path)
     content = _parsed(path)
     points = content["parameters"]["POINT"]
-    labels = tuple(str(label).strip() for label in points["LABELS"]["value"])
+    given = _labels(points)
     data = np.asarray(content["data"]["points"], dtype=np.float64)  # (4, n, frames)
     positions = np.ascontiguousarray(data[:3].transpose(2, 1, 0))
-    labels = labels[: positions.shape[1]]
-    if len(labels) != positions.shape[1] or not labels or not len(positions):
-        raise FormatError(f"{path.name} holds {positions.shape[1]} points but names {len(labels)}.", EXPECTED)
+    count = positions.shape[1]
+    if not given or not count or not len(positions):
+        raise FormatError(f"{path.name} holds {count} points but names {len(given)}.", EXPECTED)
+    notices = []
+    if len(given) < count:
+        notices.append(f"The file names {len(given)} of its {count} points: the others go by their place.")
+    labels, doubled = each_once([*given[:count], *[""] * (count - len(given))])
     residuals = np.asarray(content["data"]["meta_points"]["residuals"]).reshape(-1, data.shape[1], data.shape[2])[0].T
     gap = ~np.isfinite(positions).all(axis=2) | (residuals < 0) | (positions == 0).all(axis=2)
     positions[gap] = np.nan
@@ -35,7 +41,18 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     scale = TO_MM.get(unit or said)
     if scale is None:
         raise FormatError(f"{path.name} is in the unit {said[:20]!r}.", "Retake reads mm, cm and m.")
-    return Markers(positions * scale, labels, fps or float(points["RATE"]["value"][0]), path.name)
+    return Markers(positions * scale, labels, fps or float(points["RATE"]["value"][0]), path.name, (*notices, *doubled))
+
+
+def _labels(points: Any) -> list[str]:
+    """Return the names of all points: a list holds at most 255, the next follow in LABELS2, LABELS3 and so on."""
+    names: list[str] = []
+    for number in range(1, MOST_LISTS):
+        listed = points.get("LABELS" if number == 1 else f"LABELS{number}")
+        if listed is None:
+            break
+        names += [str(label).strip() for label in listed["value"]]
+    return names
 
 
 def _check_sizes(path: Path) -> None:
@@ -49,9 +66,27 @@ def _check_sizes(path: Path) -> None:
         raise unread(path, error) from error
     if len(header) < HEADER_BYTES or header[1] != 0x50:
         raise FormatError(f"{path.name} is not a C3D file.", EXPECTED)
+    _require_byte_order(path, header[0], size)
     points, _, first, last = struct.unpack_from("<HHHH", header, 2)
-    if points * max(0, last - first + 1) * SMALLEST_POINT > size:
+    frames = max(0, last - first + 1)
+    if points * frames * SMALLEST_POINT > size:
         raise FormatError(f"{path.name} declares more points than it holds.", "The file may be cut off or damaged.")
+    CAPTURE_BUDGET.require(path.name, frames=frames, values=4 * points * frames)
+
+
+def _require_byte_order(path: Path, block: int, size: int) -> None:
+    """Refuse the byte order of SGI machines by name; the parameters, at a block of 512 bytes, say who wrote them."""
+    place = (block - 1) * HEADER_BYTES + 3
+    if not 0 <= place < size:
+        raise FormatError(f"{path.name} is cut off: its parameters are beyond its end.", EXPECTED)
+    with path.open("rb") as file:
+        file.seek(place)
+        processor = file.read(1)[0]
+    if processor == SGI:
+        raise FormatError(
+            f"{path.name} was written in the byte order of SGI (MIPS) machines, which Retake does not read.",
+            "Export it again with Intel byte order, or as TRC or CSV.",
+        )
 
 
 def _parsed(path: Path) -> Any:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
-from engine.formats.capture import TO_MM, Markers, unit_by_size
+from engine.formats.capture import TO_MM, Markers, each_once, unit_by_size
 from engine.formats.markers_text import decoded, lines_of, numbers
 from engine.take import Array
 
@@ -27,7 +27,8 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     first = decoded(lines[0], path, EXPECTED)
     separator = max((",", ";", "\t"), key=first.count)
     header = [cell.strip().strip('"') for cell in first.split(separator)]
-    names, columns, said = _columns(header, path)
+    given, columns, said = _columns(header, path)
+    names, doubled = each_once(given)
     if len(lines) < 2:
         raise FormatError(f"{path.name} has a header but no frames.")
     table = numbers(lines[1:], len(header), separator=separator.encode(), first_row=2, path=path)
@@ -35,7 +36,7 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     if not np.isfinite(positions).all(axis=2).any():
         raise FormatError(f"{path.name} holds no frame in which a marker was seen.")
     positions[~np.isfinite(positions).all(axis=2)] = np.nan
-    notices = []
+    notices = [*doubled]
     if unit is None and said is None:
         said, notice = unit_by_size(positions[np.isfinite(positions).any(axis=(1, 2))])
         notices.append(notice)
@@ -48,26 +49,32 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
 
 def _columns(header: list[str], path: Path) -> tuple[tuple[str, ...], npt.NDArray[np.int64], str | None]:
     """Return the markers' names, their columns, (n, 3), and the unit that the header names."""
-    found: dict[str, dict[str, int]] = {}
+    found: dict[str, list[dict[str, int]]] = {}
     units = set()
     for column, cell in enumerate(header):
         match = _COORDINATE.match(cell)
         if match and cell.lower() not in ("time", "frame", "index"):
-            axes = found.setdefault(match[1], {})
-            if match[2].lower() in axes:
+            sets = found.setdefault(match[1], [{}])
+            if len(sets[-1]) == 3 and match[2].lower() in sets[-1]:
+                sets.append({})  # another marker of the same name
+            if match[2].lower() in sets[-1]:
                 raise FormatError(f"{path.name} names the column {cell[:40]!r} twice.", EXPECTED)
-            axes[match[2].lower()] = column
+            sets[-1][match[2].lower()] = column
             units.add(match[3])
     if not found:
         raise FormatError(f"{path.name} has no columns of markers in its first row.", EXPECTED)
-    for name, axes in found.items():
+    listed = [(name, axes) for name, sets in found.items() for axes in sets]
+    placed = sorted(listed, key=lambda marker: min(marker[1].values()))
+    for name, axes in placed:
         if len(axes) < 3:
             lacking = next(axis for axis in "xyz" if axis not in axes)
+            if len(found[name]) > 1:
+                raise FormatError(f"{path.name} names columns of the marker {name[:40]!r} twice.", EXPECTED)
             raise FormatError(f"{path.name} has no {lacking} column for the marker {name[:40]!r}.", EXPECTED)
     if len(units) > 1:
         raise FormatError(f"{path.name} names different units in its first row.", "Use one unit for all markers.")
-    columns = np.array([[axes[axis] for axis in "xyz"] for axes in found.values()])
-    return tuple(found), columns, units.pop()
+    columns = np.array([[axes[axis] for axis in "xyz"] for _, axes in placed])
+    return tuple(name for name, _ in placed), columns, units.pop()
 
 
 def _rate(header: list[str], table: Array) -> float | None:

@@ -8,16 +8,20 @@ from pathlib import Path
 import numpy as np
 
 from engine.errors import FormatError
+from engine.formats.capture import CAPTURE_BUDGET
 from engine.formats.content import content_of
 from engine.take import Array
 
 MAX_CELLS = 3 * 4096
+MORE_LINES = 100  # of a file than it has frames
+BLOCK = 1_000_000  # cells that are parsed at a time
 MAX_HEADER_BYTES = 512 * 1024
 
 
 def lines_of(path: Path, expected: str) -> list[bytes]:
     """Return a text file's lines without their ends; raises `FormatError` where it is empty, unreadable or no text."""
     content = content_of(path)
+    CAPTURE_BUDGET.require(path.name, frames=max(0, content.count(b"\n") - MORE_LINES))
     if not content.strip():
         raise FormatError(f"{path.name} is empty.", expected)
     if b"\x00" in content[:MAX_HEADER_BYTES]:
@@ -27,7 +31,7 @@ def lines_of(path: Path, expected: str) -> list[bytes]:
 
 def decoded(line: bytes, path: Path, expected: str) -> str:
     """Return a header line as text; raises `FormatError` where it is too long or not UTF-8."""
-    if len(line) > MAX_HEADER_BYTES or max(line.count(b","), line.count(b"\t")) > MAX_CELLS:
+    if len(line) > MAX_HEADER_BYTES or max(line.count(mark) for mark in (b",", b"\t", b";")) > MAX_CELLS:
         raise FormatError(f"{path.name} has too many columns.", expected)
     try:
         return line.decode("utf-8")
@@ -40,6 +44,21 @@ def numbers(lines: list[bytes], cells: int, *, separator: bytes, first_row: int,
 
     Raises `FormatError` with row and column of what is no finite number, and for a row with too many cells.
     """
+    CAPTURE_BUDGET.require(path.name, values=len(lines) * cells)  # a short row declares as many as a full one
+    table = np.empty((len(lines), cells))
+    step = max(1, BLOCK // cells)
+    for start in range(0, len(lines), step):
+        part = lines[start : start + step]
+        table[start : start + step] = _block(part, cells, separator=separator, first_row=first_row + start, path=path)
+    infinite = np.argwhere(np.isinf(table))
+    if len(infinite):
+        row, column = infinite[0]
+        raise FormatError(f"{path.name} has an infinite number in row {row + first_row}, column {column + 1}.")
+    return np.asarray(table)
+
+
+def _block(lines: list[bytes], cells: int, *, separator: bytes, first_row: int, path: Path) -> Array:
+    """Return some rows of `numbers`: as text all of them would take several times the memory."""
     rows = []
     for row, line in enumerate(lines, first_row):
         parts = line.split(separator)
@@ -52,14 +71,9 @@ def numbers(lines: list[bytes], cells: int, *, separator: bytes, first_row: int,
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            table = np.fromstring(b",".join(rows), dtype=np.float64, sep=",").reshape(len(rows), cells)
+            return np.fromstring(b",".join(rows), dtype=np.float64, sep=",").reshape(len(rows), cells)
         except (ValueError, DeprecationWarning):
             raise _blame(rows, first_row, path) from None
-    infinite = np.argwhere(np.isinf(table))
-    if len(infinite):
-        row, column = infinite[0]
-        raise FormatError(f"{path.name} has an infinite number in row {row + first_row}, column {column + 1}.")
-    return np.asarray(table)
 
 
 def _blame(rows: list[bytes], first_row: int, path: Path) -> FormatError:

@@ -10,7 +10,7 @@ import numpy as np
 
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
-from engine.formats.capture import TO_MM, Markers
+from engine.formats.capture import TO_MM, Markers, each_once
 from engine.formats.markers_text import decoded, lines_of, numbers
 
 EXPECTED = "A TRC file begins with PathFileType and names its rate, units and markers in the lines below."
@@ -24,7 +24,7 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     if len(head) < HEADER_LINES or not head[0].startswith("PathFileType"):
         raise FormatError(f"{path.name} does not begin as a TRC file does.", EXPECTED)
     settings = dict(zip(head[1].lower().split(), head[2].split(), strict=False))
-    names = tuple(cell.strip() for cell in head[3].split("\t")[2:] if cell.strip())
+    names, doubled = each_once([cell for cell in head[3].split("\t")[2:] if cell.strip()])
     declared = _number(settings, "nummarkers", path)
     if not names or declared != len(names):
         raise FormatError(f"{path.name} says it has {declared:g} markers but names {len(names)}.", EXPECTED)
@@ -39,7 +39,7 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     if scale is None:
         raise FormatError(f"{path.name} is in the unit {settings['units'][:20]!r}.", "Retake reads mm, cm and m.")
     rows = _number(settings, "numframes", path)
-    notices = () if rows == len(body) else (f"The file says it has {rows:g} frames but holds {len(body)}.",)
+    notices = doubled if rows == len(body) else (*doubled, f"The file says it has {rows:g} frames but holds {len(body)}.",)
     return Markers(positions * scale, names, fps or _number(settings, "datarate", path), path.name, notices)
 
 

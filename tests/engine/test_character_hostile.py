@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,7 @@ import numpy as np
 import pytest
 
 from engine.character import BUNDLED, bundled, load, save
-from engine.errors import AssetError
+from engine.errors import AssetError, FormatError
 from engine.formats.characters.opening import character_of
 
 Stored = dict[str, Any]
@@ -56,6 +58,40 @@ def test_a_damaged_character_is_a_sentence(tmp_path: Path, damage: Callable[[Sto
     for read in (load, character_of):
         with pytest.raises(AssetError, match=r"head\.npz is missing or damaged"):
             read(tmp_path / "head.npz")
+
+
+def _npz_with_header(path: Path, name: str, dtype: str, shape: tuple[int, ...], like: Path) -> None:
+    """Copy an npz but for one array, of which only a header is left that declares what no bytes fill."""
+    header = f"{{'descr': '{dtype}', 'fortran_order': False, 'shape': {shape}, }}".ljust(117).encode() + b"\n"
+    with zipfile.ZipFile(like) as old, zipfile.ZipFile(path, "w") as new:
+        for member in old.namelist():
+            empty = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header
+            new.writestr(member, empty if member == f"{name}.npy" else old.read(member))
+
+
+@pytest.mark.parametrize("dtype", ["<U0", "|S0", "|V0"])
+@pytest.mark.parametrize("shape", [(10**9,), (10**18,), (10**9, 10**9)])
+def test_values_without_width_are_not_counted_out(tmp_path: Path, dtype: str, shape: tuple[int, ...]) -> None:
+    packed = tmp_path / "ict.npz"
+    points = np.zeros((4, 3), np.float32)
+    np.savez(packed, neutral=points, faces=np.zeros((2, 4), np.int32), shape_names=np.array(["a"]), deltas=points[None])
+    _npz_with_header(tmp_path / "a.npz", "shape_names", dtype, shape, packed)
+    with pytest.raises(FormatError, match="declares more data than it holds"):
+        character_of(tmp_path / "a.npz")
+    _npz_with_header(tmp_path / "b.npz", "landmark_names", dtype, shape, BUNDLED)
+    with pytest.raises(AssetError, match="missing or damaged"):
+        load(tmp_path / "b.npz")
+
+
+def test_an_archive_that_unpacks_to_gigabytes_is_refused_unpacked(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "a.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in ("neutral", "faces", "shape_names", "deltas"):
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                for _ in range(200 if name == "deltas" else 1):
+                    file.write(bytes(4 << 20))
+    assert (tmp_path / "a.npz").stat().st_size < 2e6
+    with pytest.raises(FormatError, match="bytes of memory"):
+        character_of(tmp_path / "a.npz")
 
 
 @pytest.mark.parametrize("seed", range(6))

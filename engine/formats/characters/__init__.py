@@ -1,4 +1,4 @@
-"""Characters from other programs: glTF with morph targets, a folder of OBJ files, ICT-FaceKit; and our own file."""
+"""Characters from other programs: glTF and VRM with morph targets, a folder of OBJ files, ICT-FaceKit; and our own file."""
 
 from __future__ import annotations
 
@@ -9,11 +9,17 @@ from engine.errors import FormatError
 from engine.formats.characters.raw import RawCharacter
 from engine.formats.content import require_file
 
-KNOWN = "Retake imports glTF and GLB, folders of OBJ files, and ICT-FaceKit."
+KNOWN = "Retake imports glTF, GLB and VRM, folders of OBJ files, and ICT-FaceKit."
 
 
 def read(path: Path) -> RawCharacter:
-    """Read a character's mesh and shapes from any supported file or folder; raises `FormatError`."""
+    """Read a character's mesh and shapes from any supported file or folder, its vertices welded; raises `FormatError`."""
+    from engine.formats.characters.weld import welded
+
+    return welded(_read(path))
+
+
+def _read(path: Path) -> RawCharacter:
     from engine.formats.characters import gltf, ict, obj
 
     if os.path.isdir(path):  # which raises for no name, as pathlib does
@@ -22,7 +28,7 @@ def read(path: Path) -> RawCharacter:
         raise FormatError(f"{path.name[:80]} is not there.", KNOWN)
     require_file(path)
     ending = path.suffix.lower()
-    if ending in (".gltf", ".glb"):
+    if ending in (".gltf", ".glb", ".vrm"):
         return gltf.read(path)
     if ending == ".obj":
         return obj.read_mesh(path)

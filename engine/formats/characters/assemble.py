@@ -7,39 +7,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from engine.character import Character
-from engine.errors import FormatError
+from engine.character import Character, bundled
+from engine.errors import EditError, FormatError
+from engine.formats.budget import BUDGET
 from engine.formats.characters.colouring import colours_of
+from engine.formats.characters.frame import TYPICAL_MM, UNITS_MM, Detection, Frame, detect
 from engine.formats.characters.landmarks import transfer_landmarks
 from engine.formats.characters.names import Match, match_names
 from engine.formats.characters.raw import RawCharacter
+from engine.framing import LEAST_SHARE, share_seen
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
-UNITS_MM = {"mm": 1.0, "cm": 10.0, "in": 25.4, "m": 1000.0}
-HEAD_MM = (150.0, 700.0)  # height of a head, from chin-to-crown alone to head and shoulders
-TYPICAL_MM = 280.0
-UP = ("y", "z")
-
-
-@dataclass(frozen=True)
-class Frame:
-    """How a file's coordinates become ours: millimetres, Y up, Z forward.
-
-    Attributes
-    ----------
-    unit : name of the file's unit, a key of UNITS_MM
-    up : the file's upward axis, y or z
-    """
-
-    unit: str
-    up: str
-
-    @property
-    def matrix(self) -> Array:
-        """Return the (3, 3) that takes the file's rows to ours."""
-        turn = np.eye(3) if self.up == "y" else np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]])
-        return np.asarray(UNITS_MM[self.unit] * turn)
-
+OTHER_VALUES = 4  # coordinates beside the shapes, of each vertex
+SMALLEST_MM, LARGEST_MM = 20.0, 5000.0  # height of a head alone, of a giant's body
 
 @dataclass(frozen=True, eq=False)
 class Import:
@@ -61,20 +41,9 @@ class Import:
     notices: tuple[str, ...] = field(default=())
 
 
-def detect_frame(raw: RawCharacter) -> Frame:
-    """Guess unit and upward axis: a head is a few hundred mm high.
-
-    The jaw opens downwards and back: with Y up that is against Y, with Z up (facing against Y) along it. Without that
-    shape the upward axis is the longer of the two.
-    """
-    size = np.ptp(raw.vertices, axis=0)
-    jaw = [delta for name, delta in raw.shapes.items() if any(m.shape == "jawOpen" for m in match_names([name]))]
-    upright = sum(float(delta[:, 1].sum()) for delta in jaw) < 0 if jaw else size[1] >= size[2]
-    up = "y" if upright else "z"
-    height = size[1 if up == "y" else 2]
-    inside = [unit for unit, mm in UNITS_MM.items() if HEAD_MM[0] <= height * mm <= HEAD_MM[1]]
-    unit = min(inside or UNITS_MM, key=lambda unit: abs(np.log(height * UNITS_MM[unit] / TYPICAL_MM)))
-    return Frame(unit, up)
+def detect_frame(raw: RawCharacter, matches: Sequence[Match] | None = None) -> Frame:
+    """Guess a file's unit and axes by its face, as `frame.detect` does."""
+    return detect(raw, match_names(raw.shapes) if matches is None else matches).frame
 
 
 def assemble(
@@ -83,34 +52,75 @@ def assemble(
     frame: Frame | None = None,
     matches: Sequence[Match] | None = None,
     landmarks: Mapping[str, int] | None = None,
+    found: Detection | None = None,
 ) -> Import:
     """Make a character of a file's mesh; what is not given is detected.
 
-    Raises `FormatError` for a landmark outside the mesh.
+    Parameters
+    ----------
+    raw : from `characters.read`
+    frame : unit and axes of the file
+    matches : what each of its shapes is taken for
+    landmarks : vertices that were placed by hand, by name and in the file's numbers
+    found : what `frame.detect` said of the same
+
+    Raises
+    ------
+    FormatError : for a landmark outside the mesh, and for a head that would not be seen
+    EditError : for a landmark that no head has
     """
-    frame = frame or detect_frame(raw)
     rows = list(matches) if matches is not None else match_names(raw.shapes)
+    found = found or detect(raw, rows)
+    frame = frame or found.frame
     neutral = raw.vertices @ frame.matrix
-    deltas = np.zeros((len(SHAPES), len(neutral), 3), np.float32)
     used = [row for row in rows if row.sure]
+    BUDGET.require(raw.name, values=3 * len(neutral) * (len(used) + OTHER_VALUES))
+    deltas = np.zeros((len(SHAPES), len(neutral), 3), np.float32)
+    turn = frame.matrix.astype(np.float32)
     for row in used:
-        deltas[SHAPE_INDEX[row.shape]] += raw.shapes[row.source] @ frame.matrix.astype(np.float32)
-    _require_inside(landmarks or {}, raw)
-    given = {name: int(vertex) for name, vertex in (landmarks or {}).items()}
-    found, away = transfer_landmarks(neutral, raw.triangles, deltas, given)
+        deltas[SHAPE_INDEX[row.shape]] += raw.shapes[row.source] @ turn
+    given = _placed(landmarks or {}, raw)
+    _require_size(neutral, raw, frame, found)
+    places, away = transfer_landmarks(neutral, raw.triangles, deltas, given)
     character = Character(
         neutral.astype(np.float32),
         raw.triangles,
         deltas,
-        colours_of(neutral, raw.triangles, found),
-        found,
+        colours_of(neutral, raw.triangles, places),
+        places,
         raw.name,
+        split=raw.split,
+        split_triangles=raw.split_triangles,
     )
-    return Import(character, frame, rows, away, (*raw.notices, *_notices(frame, rows, raw)))
+    if share_seen(character) < LEAST_SHARE:
+        raise _unseen(raw, frame, found)
+    return Import(character, frame, rows, away, (*raw.notices, *_notices(frame, rows, raw, found)))
 
 
-def _notices(frame: Frame, rows: Sequence[Match], raw: RawCharacter) -> list[str]:
-    sentences = [f"Read in {frame.unit}, {frame.up} up."]
+def _require_size(neutral: Array, raw: RawCharacter, frame: Frame, found: Detection) -> None:
+    """Refuse a mesh that is a thousand times too large or small before landmarks are looked for on it."""
+    height = float(np.ptp(neutral[:, 1]))
+    if not SMALLEST_MM <= height <= LARGEST_MM:
+        raise _unseen(raw, frame, found)
+
+
+def _unseen(raw: RawCharacter, frame: Frame, found: Detection) -> FormatError:
+    height = float(np.ptp(raw.vertices @ frame.matrix, axis=0)[1])
+    size = found.apart if np.isfinite(found.apart) else height / UNITS_MM[frame.unit] / TYPICAL_MM
+    unit = min(UNITS_MM, key=lambda name: abs(np.log(max(size, 1e-300) * UNITS_MM[name])))
+    advice = f"Choose its unit and axes by hand: {unit} would fit its face." if unit != frame.unit else ""
+    return FormatError(
+        f"{raw.name[:60]} would hardly be seen: read in {frame.unit}, {frame.up} up, it is {height / 1000:.3g} m high.",
+        advice or "Choose its unit and axes by hand, or place its landmarks.",
+    )
+
+
+def _notices(frame: Frame, rows: Sequence[Match], raw: RawCharacter, found: Detection) -> list[str]:
+    sentences = [f"Read in {frame.unit}, {frame.up} up, facing {frame.facing}."]
+    if found.exchanged:
+        sentences.append("Its left shapes lie on its right: the file may be mirrored, or name sides as a viewer sees them.")
+    if len(raw.split):
+        sentences.append(f"{len(raw.split):,} vertices of the file are {len(raw.vertices):,} places; seams were closed.")
     missing = [shape for shape in SHAPES if not any(row.sure and row.shape == shape for row in rows)]
     if not raw.shapes:
         sentences.append("The mesh has no shapes: it can be driven from points, not from weights.")
@@ -120,12 +130,28 @@ def _notices(frame: Frame, rows: Sequence[Match], raw: RawCharacter) -> list[str
     doubtful = [row.source for row in rows if row.shape and not row.sure]
     if doubtful:
         sentences.append(
-            f"{len(doubtful)} names are like a shape but not alike enough to be taken: {', '.join(doubtful[:4])}."
+            f"{len(doubtful)} names are like a shape but not alike enough to be taken: {_few(doubtful)}."
         )
+    guessed = [f"{row.source} for {row.shape}" for row in rows if row.sure and not row.certain]
+    if guessed:
+        sentences.append(f"Taken by likeness: {_few(guessed)}.")
+    rivals = [f"{row.source} ({row.rival} is there)" for row in rows if row.rival]
+    if rivals:
+        sentences.append(f"Left out: {_few(rivals)}.")
     return sentences
 
 
-def _require_inside(landmarks: Mapping[str, int], raw: RawCharacter) -> None:
+def _few(texts: Sequence[str]) -> str:
+    shown = ", ".join(text[:60] for text in texts[:4])
+    return shown + (f" and {len(texts) - 4} more" if len(texts) > 4 else "")
+
+
+def _placed(landmarks: Mapping[str, int], raw: RawCharacter) -> dict[str, int]:
+    """Return landmarks by vertex of the welded mesh; raises for a name or a number that there is not."""
+    count, known = len(raw.split) or len(raw.vertices), bundled().landmarks
     for name, vertex in landmarks.items():
-        if not 0 <= vertex < len(raw.vertices):
-            raise FormatError(f"The landmark {name!r} names vertex {vertex}; {raw.name} has {len(raw.vertices)}.")
+        if name not in known:
+            raise EditError(f"There is no landmark called {name[:60]!r}.", f"There are: {', '.join(known)}.")
+        if not 0 <= vertex < count:
+            raise FormatError(f"The landmark {name!r} names vertex {vertex}; {raw.name} has {count}.")
+    return {name: int(raw.split[vertex]) if len(raw.split) else int(vertex) for name, vertex in landmarks.items()}

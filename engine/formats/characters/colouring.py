@@ -8,8 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.manifold.drive import parts_of
-from engine.take import Array, Mask
+from engine.take import Array
 
+Rows = npt.NDArray[np.int64]
+FEWEST_OF_PART, MOST_PARTS = 4, 400  # vertices of a part that is painted, parts
 SKIN, MOUTH, TOOTH, LASH = (205, 165, 145), (150, 75, 75), (232, 226, 212), (122, 94, 82)
 WHITE, IRIS, PUPIL = (236, 234, 230), (88, 122, 138), (20, 20, 24)
 IRIS_DEG, PUPIL_DEG, SOFT_DEG = 26.0, 11.0, 8.0  # half angles about the eyeball's centre, and the width of their edges
@@ -27,19 +29,29 @@ def colours_of(points: Array, triangles: npt.NDArray[np.int32], landmarks: Mappi
     if not {*_MOUTH, *_lids("left"), *_lids("right")} <= set(landmarks):
         return colours
     parts = parts_of(triangles, len(points))
-    skin = np.argmax(np.bincount(parts))
-    others = [parts == part for part in np.unique(parts) if part != skin]
+    others = _all_but(int(parts[landmarks["lip_inner_upper"]]), parts)
     for side in ("left", "right"):
         _paint_eye(colours, others, points, points[[landmarks[name] for name in _lids(side)]])
     _paint_mouth(colours, others, points, points[[landmarks[name] for name in _MOUTH]])
     return colours
 
 
+def _all_but(skin: int, parts: Rows) -> list[Rows]:
+    """Return the rows of each part but the skin, the largest MOST_PARTS of them; a triangle apart is no part."""
+    order = np.argsort(parts, kind="stable")
+    counts = np.bincount(parts)
+    ends = np.cumsum(counts)
+    chosen = np.flatnonzero(counts >= FEWEST_OF_PART)
+    chosen = chosen[chosen != skin]
+    largest = chosen[np.argsort(-counts[chosen], kind="stable")][:MOST_PARTS]
+    return [order[ends[part] - counts[part] : ends[part]] for part in sorted(largest)]
+
+
 def _lids(side: str) -> tuple[str, str]:
     return f"lid_upper_{side}", f"lid_lower_{side}"
 
 
-def _paint_eye(colours: npt.NDArray[np.uint8], parts: list[Mask], points: Array, lids: Array) -> None:
+def _paint_eye(colours: npt.NDArray[np.uint8], parts: list[Rows], points: Array, lids: Array) -> None:
     """Paint the parts about the lids, (2, 3) mm: balls, the shells on them, and the lashes above."""
     between = lids.mean(axis=0)
     near = [rows for rows in parts if np.abs(_middle(points[rows]) - between)[:2].max() < EYE_MM]
@@ -51,7 +63,7 @@ def _paint_eye(colours: npt.NDArray[np.uint8], parts: list[Mask], points: Array,
         away, box = points[rows] - centre, np.ptp(points[rows], axis=0)
         if np.ptp(np.linalg.norm(away, axis=1)) < SHELL_SHARE * radius and box[0] < LASH_RATIO * box[1]:
             colours[rows] = _eyeball(away)
-        elif _middle(points[rows])[1] > between[1] and rows.sum() < LASH_VERTICES:
+        elif _middle(points[rows])[1] > between[1] and len(rows) < LASH_VERTICES:
             colours[rows] = LASH
 
 
@@ -67,7 +79,7 @@ def _ball(points: Array) -> tuple[Array, float] | None:
     return (centre, float(away.mean())) if np.ptp(away) < SHELL_SHARE * away.mean() else None
 
 
-def _paint_mouth(colours: npt.NDArray[np.uint8], parts: list[Mask], points: Array, mouth: Array) -> None:
+def _paint_mouth(colours: npt.NDArray[np.uint8], parts: list[Rows], points: Array, mouth: Array) -> None:
     """Paint the parts behind the lips: teeth are narrow or shallow, the rest is not. `mouth` is its corners and a lip."""
     width, lip = float(np.ptp(mouth[:2, 0])), mouth[2]
     for rows in parts:

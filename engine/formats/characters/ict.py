@@ -24,6 +24,8 @@ def read(path: Path) -> RawCharacter:
     stored = arrays_of(path, KEYS)
     try:
         neutral, faces = np.asarray(stored["neutral"], np.float64), stored["faces"]
+        if stored["shape_names"].size > MAX_SHAPES:
+            raise FormatError(f"{path.name} declares more data than a character can hold.")
         names = [str(name) for name in np.ravel(stored["shape_names"])]
         deltas = np.asarray(stored["deltas"], np.float32)
     except (KeyError, TypeError, ValueError) as error:
@@ -31,7 +33,7 @@ def read(path: Path) -> RawCharacter:
     sound = neutral.ndim == 2 and neutral.shape[1] == 3 and faces.ndim == 2 and faces.shape[1] in (3, 4)
     if not sound or deltas.shape != (len(names), *neutral.shape) or faces.dtype.kind not in "iu":
         raise FormatError(f"{path.name} has arrays whose sizes do not belong together.")
-    if len(neutral) > MAX_VERTICES or len(names) > MAX_SHAPES:
+    if len(neutral) > MAX_VERTICES:
         raise FormatError(f"{path.name} declares more data than a character can hold.")
     return check(RawCharacter(path.stem, neutral, triangulated(faces), dict(zip(names, deltas, strict=True))))
 

@@ -19,6 +19,7 @@ from engine.take import SHAPES, Array
 MOVED_MM = 1.0
 LED_MM = 40.0  # how far a landmark placed by hand leads
 STRIP_MM = 15.0
+UNLIKEST = 2.0  # what `_unlike` returns at most
 HEIGHTS = 12  # at which the tip of the nose is looked for
 CLOSEST = 0.8  # share of the face that has to lie on the other head
 
@@ -55,14 +56,16 @@ def transfer_landmarks(
     source = head.neutral.astype(np.float64)
     fitted = _fit(source, head, neutral, deltas, given)
     found, away = dict(given), dict.fromkeys(given, 0.0)
-    skin = np.flatnonzero(_largest_part(triangles, len(neutral)))
+    skin = np.flatnonzero(skin_of(triangles, neutral, deltas))
     size = np.linalg.norm(np.ptp(source, axis=0)) / 20
+    shaped = bool(deltas.any())
     for name, vertex in head.landmarks.items():
         if name in given:
             continue
         gap = np.linalg.norm(neutral[skin] - fitted[vertex], axis=1)
-        unlike = _unlike(head.deltas[:, vertex], deltas[:, skin]) if np.abs(deltas).any() else np.zeros(len(skin))
-        best = int(np.argmin(gap + size * unlike))
+        near = np.flatnonzero(gap <= gap.min() + UNLIKEST * size)  # what lies further cannot be better
+        unlike = _unlike(head.deltas[:, vertex], deltas[:, skin[near]]) if shaped else np.zeros(len(near))
+        best = near[int(np.argmin(gap[near] + size * unlike))]
         found[name], away[name] = int(skin[best]), float(gap[best])
     return found, away
 
@@ -81,7 +84,7 @@ def _fit(
         ours, theirs = (_centre_of_motion(v, d[shape]) for v, d in ((source, head.deltas), (neutral, deltas)))
         if ours is not None and theirs is not None:
             pairs.append((ours, theirs))
-    sample, tree = _sample(head, whole=bool(np.abs(deltas).any())), KDTree(neutral)
+    sample, tree = _sample(head, whole=bool(deltas.any())), KDTree(neutral)
     if len(pairs) >= 4:
         start, end = (np.array(side) for side in zip(*pairs, strict=True))
         best = fit_similarity(start, end[None], mirrored=False).apply(source)[0]
@@ -104,7 +107,7 @@ def _sample(head: Character, *, whole: bool) -> npt.NDArray[np.int64]:
 
     Scalp and neck differ most from head to head, but they steady a fit that starts near its end.
     """
-    skin = _largest_part(head.triangles, len(head.neutral))
+    skin = skin_of(head.triangles, head.neutral.astype(np.float64), head.deltas)
     moved = np.linalg.norm(head.deltas, axis=2).max(axis=0) > MOVED_MM
     chosen = np.flatnonzero(skin if whole else skin & moved)
     return chosen[:: max(1, len(chosen) // 1500)]
@@ -158,9 +161,18 @@ def _centre_of_motion(vertices: Array, delta: npt.NDArray[np.float32]) -> Array 
     return np.asarray(share @ vertices / share.sum())
 
 
-def _largest_part(triangles: npt.NDArray[np.int32], vertices: int) -> npt.NDArray[np.bool_]:
-    parts = parts_of(triangles, vertices)
-    return np.asarray(parts == np.argmax(np.bincount(parts)))
+def skin_of(
+    triangles: npt.NDArray[np.int32], neutral: Array, deltas: npt.NDArray[np.float32]
+) -> npt.NDArray[np.bool_]:
+    """Return which vertices, (n,), belong to the part of which most moves, or to the largest part where nothing does.
+
+    A body and its clothes have more vertices than a face.
+    """
+    parts = parts_of(triangles, len(neutral))
+    moving = np.zeros(len(neutral), bool)
+    for delta in deltas:
+        moving |= delta.any(axis=1)
+    return np.asarray(parts == np.argmax(np.bincount(parts[moving] if moving.any() else parts)))
 
 
 def _unlike(one: npt.NDArray[np.float32], many: npt.NDArray[np.float32]) -> Array:

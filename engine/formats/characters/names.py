@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from engine.errors import EditError
 from engine.take import SHAPES
 
+EXACT, RESPELT, OTHER_NAME = 1.0, 0.99, 0.95  # likeness of ARKit's own name, of another spelling, of another word for it
 SURE = 0.8  # likeness from which a guess is taken without asking
 WORTH_SHOWING = 0.6
+LONGEST = 64  # letters; comparing takes time that grows with their square
 # Splits of one ARKit shape into two halves, and other programs' names for a shape.
 HALVES = ("browInnerUp", "cheekPuff", "mouthFunnel", "mouthPucker")
 OTHER_NAMES = {"jawopen": ("mouthopen", "jawdrop"), "eyeblinkleft": ("eyecloseleft", "blinkleft")} | {
@@ -30,17 +33,42 @@ class Match:
     ----------
     source : the file's name of the shape
     shape : the ARKit shape it is taken for; empty where it is left out
-    likeness : 0..1; 1 is the same name in another spelling
+    likeness : 0..1; 1 is ARKit's own name, or a person's word
+    rival : the ARKit shape that it is like but another name of the file has; empty where it lost to none
     """
 
     source: str
     shape: str
     likeness: float
+    rival: str = ""
 
     @property
     def sure(self) -> bool:
         """Whether the guess is taken without asking."""
         return bool(self.shape) and self.likeness >= SURE
+
+    @property
+    def certain(self) -> bool:
+        """Whether there is nothing to review: the name is ARKit's, however it is spelt."""
+        return bool(self.shape) and self.likeness >= RESPELT
+
+    @property
+    def how(self) -> str:
+        """What a reviewer reads: why the shape was taken or left out."""
+        if self.rival:
+            return f"left out: another name has {self.rival}"
+        if not self.shape:
+            return "left out: like no shape"
+        if not self.sure:
+            return "left out: not alike enough"
+        return "same name" if self.certain else "by likeness"
+
+
+def reviewed(matches: Iterable[Match]) -> list[Match]:
+    """Return the rows that a person should look at: by likeness, left out, or several names for one shape."""
+    rows = list(matches)
+    users = Counter(row.shape for row in rows if row.sure)
+    return [row for row in rows if not row.certain or users[row.shape] > 1]
 
 
 def plain(name: str) -> str:
@@ -57,41 +85,58 @@ def plain(name: str) -> str:
 
 _PLAIN = {plain(shape): shape for shape in SHAPES}
 _KNOWN = _PLAIN | {other: _PLAIN[name] for name, others in OTHER_NAMES.items() for other in others}
-_KNOWN |= {plain(f"{shape}{side}"): shape for shape in HALVES for side in ("Left", "Right")}
+_SPLIT = {plain(f"{shape}{side}"): shape for shape in HALVES for side in ("Left", "Right")}
+_KNOWN |= _SPLIT
 
 
 def match_names(names: Iterable[str]) -> list[Match]:
     """Return a row for each of the file's shapes: the ARKit shape most like it, or none.
 
-    Where two names want one shape, the likelier has it, except that the two halves of a shape share it.
+    Where several names want one shape, the likeliest has it wherever it stands in the file: ARKit's own name before
+    another spelling, that before another word, that before a likeness. The two halves of a shape share it.
     """
     guesses = [_guess(name) for name in names]
+    order = sorted(range(len(guesses)), key=lambda row: -guesses[row].likeness)
     taken: dict[str, Match] = {}
-    for guess in sorted(guesses, key=lambda match: -match.likeness):
-        if guess.shape and (guess.shape not in taken or _halves(guess, taken[guess.shape])):
-            taken.setdefault(guess.shape, guess)
-        elif guess.shape:
-            guesses[guesses.index(guess)] = replace(guess, shape="", likeness=0.0)
+    for row in order:
+        guess = guesses[row]
+        first = taken.setdefault(guess.shape, guess) if guess.shape else guess
+        if first is not guess and not _halves(guess, first):
+            guesses[row] = replace(guess, shape="", likeness=0.0, rival=guess.shape if guess.sure else "")
     return guesses
 
 
 def _guess(name: str) -> Match:
     key = plain(name)
+    if name in SHAPES:
+        return Match(name, name, EXACT)
+    if key in _PLAIN:
+        return Match(name, _PLAIN[key], RESPELT)
     if key in _KNOWN:
-        return Match(name, _KNOWN[key], 1.0)
+        return Match(name, _KNOWN[key], RESPELT if key in _SPLIT else OTHER_NAME)
     side = key.removesuffix("left").removesuffix("right") != key
     # A shape's side is certain where it is written: likeness of the rest must not turn left into right.
     ending = "left" if key.endswith("left") else "right"
     pool = [known for known in _KNOWN if (known.endswith(ending) if side else not known.endswith(("left", "right")))]
-    likeness, best = max(
-        ((difflib.SequenceMatcher(None, key, known).ratio(), known) for known in pool), default=(0.0, "")
-    )
+    likeness, best = _most_alike(key, pool)
     return Match(name, _KNOWN[best], round(likeness, 3)) if likeness >= WORTH_SHOWING else Match(name, "", 0.0)
+
+
+def _most_alike(key: str, pool: Iterable[str]) -> tuple[float, str]:
+    """Return the likeness, 0 to below that of a known name, and which name; long names are damage and like nothing."""
+    best = (0.0, "")
+    matcher = difflib.SequenceMatcher(b=key)
+    for known in pool if len(key) <= LONGEST else ():
+        matcher.set_seq1(known)
+        bar = max(best[0], WORTH_SHOWING)
+        if matcher.real_quick_ratio() > bar and matcher.quick_ratio() > bar:
+            best = max(best, (matcher.ratio(), known))
+    return OTHER_NAME * best[0], best[1]
 
 
 def _halves(one: Match, other: Match) -> bool:
     keys = sorted((plain(one.source), plain(other.source)))
-    return one.likeness == other.likeness == 1.0 and keys == [f"{plain(one.shape)}left", f"{plain(one.shape)}right"]
+    return keys == [f"{plain(one.shape)}left", f"{plain(one.shape)}right"]
 
 
 def corrected(matches: Iterable[Match], changes: Mapping[str, str]) -> list[Match]:
@@ -103,7 +148,7 @@ def corrected(matches: Iterable[Match], changes: Mapping[str, str]) -> list[Matc
     known = {row.source for row in rows}
     for source, shape in changes.items():
         if source not in known:
-            raise EditError(f"The file has no shape called {source!r}.")
+            raise EditError(f"The file has no shape called {source[:60]!r}.")
         if shape and shape not in SHAPES:
-            raise EditError(f"There is no shape called {shape!r}.", "Shapes have ARKit names, such as jawOpen.")
+            raise EditError(f"There is no shape called {shape[:60]!r}.", "Shapes have ARKit names, such as jawOpen.")
     return [Match(row.source, changes[row.source], 1.0) if row.source in changes else row for row in rows]

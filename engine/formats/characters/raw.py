@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,9 @@ class RawCharacter:
     triangles : (t, 3) int32
     shapes : the file's name of each shape -> (n, 3) float32 deltas
     notices : sentences about the import that the user should see
+    split : (file's vertices,) int32, which of `vertices` each vertex of the file is; empty where they are the same
+    split_triangles : (file's triangles, 3) int32, of the file's vertices; empty likewise
+    unit, up : what the format prescribes, a key of `frame.UNITS_MM` and a name of `frame.UPS`; empty where it does not
     """
 
     name: str
@@ -33,6 +36,10 @@ class RawCharacter:
     triangles: npt.NDArray[np.int32]
     shapes: dict[str, npt.NDArray[np.float32]]
     notices: tuple[str, ...] = ()
+    split: npt.NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+    split_triangles: npt.NDArray[np.int32] = field(default_factory=lambda: np.zeros((0, 3), np.int32))
+    unit: str = ""
+    up: str = ""
 
 
 def check(raw: RawCharacter) -> RawCharacter:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import struct
 import sys
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -118,3 +119,69 @@ def test_c3d_points_arrive_with_their_gaps(markers: Markers, tmp_path: Path) -> 
     again = read(path)
     np.testing.assert_allclose(again.positions, markers.positions, atol=1e-3)
     assert again.names == markers.names and again.fps == 100.0
+
+
+def _c3d(path: Path, labels: list[list[str]], points: int, frames: int = 3) -> Path:
+    ezc3d = pytest.importorskip("ezc3d")
+    content = ezc3d.c3d()
+    content["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
+    content["parameters"]["POINT"]["RATE"]["value"] = [100.0]
+    content["parameters"]["POINT"]["LABELS"]["value"] = [name for part in labels for name in part]
+    content["data"]["points"] = np.arange(4.0 * points * frames).reshape(4, points, frames) + 1
+    content.write(str(path))
+    return path
+
+
+@pytest.mark.parametrize("count", [255, 256, 260, 600])
+def test_a_c3d_names_more_points_than_one_list_holds(count: int, tmp_path: Path) -> None:
+    names = [f"F{number:03}" for number in range(count)]
+    found = read(_c3d(tmp_path / "m.c3d", [names], count))
+    assert found.names == tuple(names) and found.notices == ()
+
+
+def test_points_of_one_name_or_of_none_are_numbered_and_said(tmp_path: Path) -> None:
+    found = read(_c3d(tmp_path / "m.c3d", [["lip", "lip", "lip 2", "", "lip"]], 5))
+    assert len(set(found.names)) == 5 and found.names[:3] == ("lip", "lip 3", "lip 2") and found.names[3] == "marker 4"
+    assert any("numbered" in notice for notice in found.notices)
+
+
+@pytest.mark.parametrize("ending", ["trc", "csv"])
+def test_markers_of_one_name_are_numbered_in_text_files_too(ending: str, markers: Markers, tmp_path: Path) -> None:
+    path = tmp_path / f"m.{ending}"
+    write(markers, path)
+    path.write_text(path.read_text().replace("brow_left", "nose"))
+    found = read(path)
+    assert found.names == ("nose", "lip upper", "x", "nose 2", "M5")
+    np.testing.assert_array_equal(found.positions[:, 3], markers.positions[:, 3])
+    assert "nose: numbered" in found.notices[0]
+
+
+def test_the_byte_order_of_sgi_machines_is_named(tmp_path: Path) -> None:
+    path = _c3d(tmp_path / "m.c3d", [["a", "b", "c"]], 3)
+    content = bytearray(path.read_bytes())
+    content[(content[0] - 1) * 512 + 3] = 86
+    path.write_bytes(content)
+    with pytest.raises(FormatError, match="byte order of SGI"):
+        read(path)
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_short_rows_below_many_columns_do_not_fill_memory(separator: str, tmp_path: Path) -> None:
+    path = tmp_path / "m.csv"
+    header = separator.join(f"m{marker}_{axis}" for marker in range(4_000) for axis in "xyz")
+    path.write_text(header + "\n" + "1\n" * 20_000)
+    tracemalloc.start()
+    with pytest.raises(FormatError, match=r"asks for 240,000,000 numbers"):
+        read(path)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 32e6
+
+
+def test_more_columns_or_rows_than_a_capture_has_are_refused_unread(tmp_path: Path) -> None:
+    (tmp_path / "wide.csv").write_text(";".join(f"m{marker}_x" for marker in range(20_000)) + "\n")
+    with pytest.raises(FormatError, match="too many columns"):
+        read(tmp_path / "wide.csv")
+    (tmp_path / "long.csv").write_text("a_x,a_y,a_z\n" + "\n" * 3_000_000)
+    with pytest.raises(FormatError, match="frames"):
+        read(tmp_path / "long.csv")

@@ -53,7 +53,7 @@ def test_a_landmark_placed_by_hand_stays_and_one_outside_is_refused() -> None:
 
 def test_what_was_guessed_is_said() -> None:
     made = assemble(foreign(0.1, UPRIGHT, shapes=False))
-    assert "Read in cm, y up." in made.notices
+    assert "Read in cm, y up, facing z." in made.notices
     assert any("no shapes" in notice for notice in made.notices)
 
 

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from engine.errors import FormatError
-from engine.formats.characters import gltf
+from engine.formats.characters import gltf, read
 
 VERTICES = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32)
 FACES = np.array([[0, 1, 2], [0, 2, 3]], np.uint16)
@@ -104,6 +104,80 @@ def test_meshes_that_share_a_shape_s_name_move_together(tmp_path: Path) -> None:
     np.testing.assert_array_equal(raw.shapes["jawOpen"], np.concatenate([JAW, JAW]))
 
 
+PLACES_OF_NAMES: dict[str, Callable[[dict[str, Any]], None]] = {
+    "mesh": lambda mesh: mesh.update(extras={"targetNames": ["jawOpen", "mouthSmileLeft"]}),
+    "primitive": lambda mesh: mesh["primitives"][0].update(extras={"targetNames": ["jawOpen", "mouthSmileLeft"]}),
+    "target": lambda mesh: [
+        target.update(extras={"name": name})
+        for target, name in zip(mesh["primitives"][0]["targets"], ("jawOpen", "mouthSmileLeft"), strict=True)
+    ],
+    "too few in the mesh": lambda mesh: (
+        mesh.update(extras={"targetNames": ["jawOpen"]}),
+        mesh["primitives"][0].update(extras={"targetNames": ["other", "mouthSmileLeft"]}),
+    ),
+}
+
+
+@pytest.mark.parametrize("place", PLACES_OF_NAMES)
+@pytest.mark.parametrize("ending", ["glb", "vrm"])
+def test_shapes_are_named_wherever_a_program_wrote_their_names(place: str, ending: str, tmp_path: Path) -> None:
+    scene, binary = document()
+    del scene["meshes"][0]["extras"]
+    PLACES_OF_NAMES[place](scene["meshes"][0])
+    raw = read(glb(tmp_path / f"a.{ending}", scene, binary))
+    assert list(raw.shapes) == ["jawOpen", "mouthSmileLeft"]
+    np.testing.assert_array_equal(raw.shapes["jawOpen"], JAW)
+
+
+def test_shapes_are_named_by_their_accessors_where_nothing_else_names_them(tmp_path: Path) -> None:
+    scene, binary = document()
+    del scene["meshes"][0]["extras"]
+    scene["accessors"][2]["name"] = "jawOpen"
+    assert list(gltf.read(glb(tmp_path / "a.glb", scene, binary)).shapes) == ["jawOpen", "target 1"]
+
+
+def test_two_shapes_of_one_name_are_both_kept(tmp_path: Path) -> None:
+    scene, binary = document()
+    scene["meshes"][0]["extras"]["targetNames"] = ["jawOpen", "jawOpen"]
+    assert list(gltf.read(glb(tmp_path / "a.glb", scene, binary)).shapes) == ["jawOpen", "jawOpen #2"]
+
+
+def _with_skin(scene: dict[str, Any], binary: bytes, second_bone: list[float]) -> tuple[dict[str, Any], bytes]:
+    """Bones that scale a mesh in cm to a scene in m; the last vertex hangs on a second bone."""
+    binds = np.array([np.diag([0.01, 0.01, 0.01, 1.0])] * 2, np.float32)
+    joints = np.array([[0, 0, 0, 0]] * 3 + [[1, 0, 0, 0]], np.uint8)
+    shares = np.array([[1, 0, 0, 0]] * 4, np.float32)
+    for values, kind, component in ((binds, "MAT4", 5126), (joints, "VEC4", 5121), (shares, "VEC4", 5126)):
+        start = len(binary)
+        binary += values.tobytes()
+        scene["bufferViews"].append({"buffer": 0, "byteOffset": start, "byteLength": values.nbytes})
+        view = len(scene["bufferViews"]) - 1
+        scene["accessors"].append(
+            {"bufferView": view, "componentType": component, "count": len(values), "type": kind}
+        )
+    first = len(scene["accessors"]) - 3
+    scene["buffers"][0]["byteLength"] = len(binary)
+    scene["meshes"][0]["primitives"][0]["attributes"] |= {"JOINTS_0": first + 1, "WEIGHTS_0": first + 2}
+    scene["skins"] = [{"joints": [1, 2], "inverseBindMatrices": first}]
+    scene["nodes"] = [{"mesh": 0, "skin": 0, "translation": [50, 0, 0]}, {}, {"translation": second_bone}]
+    return scene, binary
+
+
+@pytest.mark.parametrize("second_bone", [[0, 0, 0], [0, 1, 0]], ids=["one place", "two places"])
+def test_bones_place_the_mesh_that_they_hold(second_bone: list[float], tmp_path: Path) -> None:
+    raw = gltf.read(glb(tmp_path / "a.glb", *_with_skin(*document(), second_bone)))
+    placed = VERTICES * 0.01
+    placed[3] += second_bone
+    np.testing.assert_allclose(raw.vertices, placed, atol=1e-6)
+    np.testing.assert_allclose(raw.shapes["jawOpen"], JAW * 0.01, atol=1e-7)
+
+
+def test_a_scene_of_many_nodes_opens(tmp_path: Path) -> None:
+    scene, binary = document()
+    scene["nodes"] += [{"name": str(number)} for number in range(20_000)]
+    assert len(gltf.read(glb(tmp_path / "a.glb", scene, binary)).vertices) == 4
+
+
 def _set(*keys: Any) -> Callable[[dict[str, Any]], None]:
     """Return a change of the document: all but the last of `keys` lead to a place, the last is put there."""
 
@@ -124,11 +198,11 @@ HOSTILE = {
     "count overflows": (_set("accessors", 0, "count", 2**63), "at most"),
     "two gigabytes of nothing": (
         _set("accessors", 0, {"componentType": 5126, "count": 178956970, "type": "VEC3"}),
-        "at most",
+        "holds none of them",
     ),
     "two gigabytes of corners": (
         _set("accessors", 1, {"componentType": 5125, "count": 2**29, "type": "SCALAR"}),
-        "corners",
+        "at most",
     ),
     "buffer larger than the file": (_set("buffers", 0, "byteLength", 2**31), "declares a buffer"),
     "negative offset": (_set("bufferViews", 0, "byteOffset", -12), "impossible size"),
@@ -150,6 +224,26 @@ HOSTILE = {
     "no mesh": (_set("nodes", []), "holds no mesh"),
     "an old version": (_set("asset", {"version": "1.0"}), "not a glTF 2.0"),
     "lists for objects": (_set("meshes", [[], []]), "damaged"),
+    "a hundred meshes of nothing": (
+        lambda scene: scene.update(
+            nodes=[{"mesh": 0}] * 100,
+            accessors=[{"componentType": 5126, "count": 2_000_000, "type": "VEC3"}],
+            meshes=[{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        ),
+        "holds none of them",
+    ),
+    "a mesh a thousand times": (
+        lambda scene: scene.update(
+            nodes=[{"mesh": 0}] * 9_000,
+            meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "targets": [{"POSITION": 2}] * 500}]}],
+        ),
+        "at most",
+    ),
+    "more nodes than a scene has": (_set("nodes", [{}] * 300_000), "at most"),
+    "a skin of bones that are not there": (
+        lambda scene: scene.update(nodes=[{"mesh": 0, "skin": 0}], skins=[{"joints": [7]}]),
+        "bone that is not there",
+    ),
 }
 
 
