@@ -22,7 +22,17 @@ from engine.formats.content import require_file
 MAX_BYTES = 512 << 20  # of all arrays that are read, unpacked; zeros are packed a thousandfold
 # What numpy and zipfile raise over damaged bytes; RuntimeError stands for encryption.
 FAULTS = (
-    *(OSError, EOFError, LookupError, ValueError, TypeError, RuntimeError, ArithmeticError, MemoryError, AttributeError),
+    *(
+        OSError,
+        EOFError,
+        LookupError,
+        ValueError,
+        TypeError,
+        RuntimeError,
+        ArithmeticError,
+        MemoryError,
+        AttributeError,
+    ),
     *(struct.error, zlib.error, lzma.LZMAError, tokenize.TokenError, SyntaxError),
 )
 DAMAGED = (*FAULTS, zipfile.BadZipFile)

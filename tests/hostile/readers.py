@@ -5,13 +5,13 @@ from __future__ import annotations
 import io
 import itertools
 import json
-import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from tests.c3d import DEC, c3d
 from tests.hostile import mutate
 from tests.hostile.mutate import Mutation
 
@@ -74,28 +74,9 @@ def _read_markers(path: Path) -> None:
 
 
 def _c3d(folder: Path) -> Iterator[tuple[str, bytes]]:
-    """Make the smallest C3D: one header block, one of parameters, four points in six frames."""
-    points, frames = 4, 6
-    labels = "".join(name.ljust(8) for name in ("nose", "lip", "x", "M5")).encode()
-
-    def parameter(name: bytes, kind: int, shape: bytes, data: bytes) -> bytes:
-        body = struct.pack("<bB", kind, len(shape)) + shape + data + b"\0"
-        return struct.pack("<bb", len(name), 1) + name + struct.pack("<h", len(body) + 2) + body
-
-    group = struct.pack("<bb", 5, -1) + b"POINT" + struct.pack("<h", 3) + b"\0"
-    entries = group + parameter(b"USED", 2, b"", struct.pack("<h", points))
-    entries += parameter(b"FRAMES", 2, b"", struct.pack("<h", frames)) + parameter(
-        b"SCALE", 4, b"", struct.pack("<f", -1.0)
-    )
-    entries += parameter(b"RATE", 4, b"", struct.pack("<f", 60.0)) + parameter(
-        b"DATA_START", 2, b"", struct.pack("<h", 3)
-    )
-    entries += parameter(b"LABELS", -1, bytes((8, points)), labels) + parameter(b"UNITS", -1, b"\x02", b"mm")
-    head = struct.pack("<BBHHHHHfHHf", 2, 0x50, points, 0, 1, frames, 0, -1.0, 3, 0, 60.0).ljust(512, b"\0")
-    block = (bytes((1, 0x50, 1, 84)) + entries + b"\0\0").ljust(512, b"\0")
-    data = np.random.default_rng(0).normal(size=(frames, points, 4)).astype("<f4")
-    data[..., 3] = 0
-    yield "a.c3d", head + block + data.tobytes().ljust(512, b"\0")
+    positions = np.random.default_rng(0).normal(size=(6, 4, 3))
+    yield "a.c3d", c3d(positions, ("nose", "lip", "x", "M5"))
+    yield "b.c3d", c3d(positions, ("nose", "lip", "x", "M5"), processor=DEC, scale=0.01, long_frames=6)
 
 
 GRID = (

@@ -20,8 +20,6 @@ CASES = ROOT.parent / "shared" / "cases" / "hostile"
 
 def fuzzed(reader: str, folder: Path, *options: str) -> dict[str, object]:
     """Return what came of mutations of a reader's files, tried in a process of its own."""
-    if reader == "c3d":
-        pytest.importorskip("ezc3d", reason="C3D files are read by an optional library")
     run = subprocess.run(
         [sys.executable, "-m", "tests.hostile.fuzz", reader, "--keep", str(folder), *options],
         cwd=ROOT,
