@@ -44,19 +44,21 @@ CONTACT_MM, CONTACT_FROM_MM = 1.0, 6.0  # lips or lids asked this close are mean
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """New weights for a range of frames; everything outside stays as it is, bit for bit.
+    """New weights for a range of frames; everything outside stays as it is, bit for bit, but for lost frames beside it.
 
     Attributes
     ----------
     start : first frame
     weights : (frames, 52)
     asked, reached : (frames, 8) control curves in mm: what was asked for, and what the new face does
+    lost : (frames,) bool, the frames that are lost from now on; None leaves it to `Take.with_rows`
     """
 
     start: int
     weights: Array
     asked: Array
     reached: Array
+    lost: Mask | None = None
 
     @property
     def stop(self) -> int:
@@ -65,16 +67,34 @@ class Patch:
 
     @classmethod
     def between(cls, before: Take, after: Take, frames: tuple[int, int]) -> Patch:
-        """Return the patch that turns one take into another over a half-open range; nothing was asked of controls."""
-        rows = np.asarray(after.weights[frames[0] : frames[1]])
+        """Return the patch that turns one take into another over a half-open range; nothing was asked of controls.
+
+        The range is grown over the lost frames beside it, which follow what changed.
+        """
         if before.weights.shape != after.weights.shape:
             raise EditError(f"The new weights have {len(after)} frames, the take {len(before)}.")
+        first, last = before.with_lost_beside(*frames)
+        rows = np.asarray(after.weights[first:last])
         reached = bundled_measurer().measure(rows)
-        return cls(frames[0], rows, reached, reached)
+        return cls(first, rows, reached, reached, after.lost[first:last])
 
     def apply(self, take: Take) -> Take:
         """Return the take with these weights in place."""
-        return take.with_rows(self.start, self.weights)
+        if self.lost is None:
+            return take.with_rows(self.start, self.weights)
+        return take.with_exact_rows(self.start, self.weights, self.lost)
+
+    def settled(self, take: Take) -> Patch:
+        """Return the patch over every frame of a take that it changes, which says of each whether it is lost."""
+        if self.lost is not None:
+            return self
+        whole = Patch.between(take, self.apply(take), (self.start, self.stop))
+        asked, reached = whole.asked.copy(), whole.reached.copy()
+        inside = slice(self.start - whole.start, self.stop - whole.start)
+        same = (whole.weights[inside] == self.weights).all(axis=1)[:, None]
+        asked[inside] = np.where(same, self.asked, asked[inside])
+        reached[inside] = np.where(same, self.reached, reached[inside])
+        return Patch(whole.start, whole.weights, asked, reached, whole.lost)
 
 
 def parse_frames(text: str, take: Take) -> tuple[int, int]:

@@ -108,16 +108,7 @@ def seen_of(
         )
     measure = bundled_measurer().measure
     now, before = controls if controls is not None else (measure(take.weights), measure(original.weights))
-    lost = still_lost(take.weights, original.weights, take.lost)
-    return Seen(take.weights, now, take.fps, lost, asked, before, visemes)
-
-
-def still_lost(weights: Array, original: Array, lost: Mask) -> Mask:
-    """Return which frames, (frames,) bool, are lost and as they were opened, weights (frames, 52) both."""
-    left = lost.copy()
-    rows = np.flatnonzero(lost)
-    left[rows] = (weights[rows] == original[rows]).all(axis=1)
-    return left
+    return Seen(take.weights, now, take.fps, take.lost, asked, before, visemes)
 
 
 def repeats(weights: Array, kept: Mask) -> Mask:

@@ -5,20 +5,19 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from engine.controls import bundled_measurer
 from engine.easing import ease
 from engine.editing import Patch
 from engine.errors import EditError
-from engine.take import SHAPES, Array, Take
+from engine.take import SHAPES, Array, Mask, Take
 
+PASTE_FEATHER_S = 0.13  # beside what is pasted; four frames at 30 fps, as long as a lip takes to open
 LOWEST_HZ = 0.001
 ORDER = 2  # filtered once in each direction, so the slope is that of order 4 and nothing shifts in time
 
 
-def _patch(take: Take, start: int, weights: Array) -> Patch:
+def _patch(take: Take, start: int, weights: Array, *, found: Mask | None = None) -> Patch:
     """Return a patch whose asked curves are what the face does: nothing was asked of the controls."""
-    reached = bundled_measurer().measure(weights)
-    return Patch(start, weights, reached, reached)
+    return Patch.between(take, take.with_rows(start, weights, found=found), (start, start + len(weights)))
 
 
 def replace_weight(take: Take, shape: int, start: int, curve: Array) -> Patch:
@@ -34,18 +33,33 @@ def replace_weight(take: Take, shape: int, start: int, curve: Array) -> Patch:
     return _patch(take, start, weights)
 
 
-def paste(take: Take, start: int, weights: Array, *, feather_frames: int = 4) -> Patch:
-    """Put copied weights, (n, 52), in place from frame `start`, easing in and out over the first and last frames.
+def paste(take: Take, start: int, weights: Array, *, feather_s: float = PASTE_FEATHER_S) -> Patch:
+    """Put copied weights, (n, 52), in place from frame `start`; the frames beside them ease over to the take.
 
-    What would lie beyond the take's end is left out; raises `EditError` where nothing is left.
+    Every pasted frame is as it was copied, so that a single pasted pose is met. Over `feather_s` beside it the take is
+    moved by the step at that end, ever less: it keeps its own motion. What would lie beyond the take's end is left out;
+    raises `EditError` where nothing is left.
     """
     pasted = weights[: max(0, len(take) - start)]
     if start < 0 or not len(pasted) or pasted.shape[1] != len(SHAPES):
         raise EditError("There is no room to paste here.", "Move the playhead into the take.")
-    from_end = np.minimum(np.arange(len(pasted)), np.arange(len(pasted))[::-1])
-    share = ease((from_end + 1) / (feather_frames + 1))[:, None]
-    present = take.weights[start : start + len(pasted)]
-    return _patch(take, start, np.where(share >= 1.0, pasted, present + share * (pasted - present)))
+    feather, stop = round(feather_s * take.fps), start + len(pasted)
+    first, last = max(0, start - feather), min(len(take), stop + feather)
+    rows = take.weights[first:last].copy()
+    rows[start - first : stop - first] = pasted
+    found = np.zeros(len(rows), bool)
+    found[start - first : stop - first] = True
+    for beside, edge, value in (
+        (slice(first, start), start, pasted[0]),
+        (slice(stop, last), stop - 1, pasted[-1]),
+    ):
+        frame = np.arange(beside.start, beside.stop)
+        share = ease(1 - np.abs(frame - edge) / (feather + 1))[:, None]
+        present = take.weights[beside]
+        moved = present + share * (value - take.weights[edge])
+        kept = np.clip(moved, np.minimum(present, 0.0), np.maximum(present, 1.0))
+        rows[frame - first] = np.where(share > 0, kept, present)
+    return _patch(take, first, rows, found=found)
 
 
 def smooth(take: Take, frames: tuple[int, int], cutoff_hz: float, *, feather_s: float = 0.15) -> Patch:

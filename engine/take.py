@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +28,7 @@ SHAPES: tuple[str, ...] = (
 )
 SHAPE_INDEX: dict[str, int] = {name: index for index, name in enumerate(SHAPES)}
 MODEL_FPS = 30.0
+T = TypeVar("T", bound=np.generic)
 
 
 def _frozen(array: npt.ArrayLike, dtype: type) -> npt.NDArray[np.generic]:
@@ -89,17 +91,43 @@ class Take:
         return bool(np.any(self.rotations[:, :3]))
 
     def with_weights(self, weights: Array) -> Take:
-        """Return the same take with other weights, (frames, 52)."""
+        """Return the same take with other weights, (frames, 52); lost frames as in `with_rows`."""
         if weights.shape != self.weights.shape:
             raise EditError(f"The new weights have {weights.shape[0]} frames, the take {len(self)}.")
-        return replace(self, weights=weights)
+        return self.with_rows(0, weights)
 
-    def with_rows(self, start: int, rows: Array) -> Take:
-        """Return the same take with the weights of the frames from `start` replaced, (n, 52)."""
-        weights = self.weights.copy()
+    def with_rows(self, start: int, rows: Array, *, found: Mask | None = None) -> Take:
+        """Return the same take with the weights of the frames from `start` replaced, (n, 52).
+
+        A lost frame is lost no more once its weights change, or where `found`, (n,) bool, says so. The frames that stay
+        lost are interpolated anew where a frame beside them changed, as a reader of the written file will do.
+        """
+        stop = start + len(rows)
+        weights, lost = self.weights.copy(), self.lost
+        weights[start:stop] = rows
+        if lost.any():
+            changed = (weights[start:stop] != self.weights[start:stop]).any(axis=1)
+            changed = changed if found is None else changed | found
+            lost = lost.copy()
+            lost[start:stop] &= ~changed
+            first, last = self.with_lost_beside(start, stop)
+            first, last = max(first - 1, 0), min(last + 1, len(self))
+            known = np.zeros(last - first, bool)
+            known[start - first : stop - first] = changed
+            _interpolate(weights[first:last], lost[first:last], known)
+        return replace(self, weights=_owned(weights), lost=_owned(lost))
+
+    def with_exact_rows(self, start: int, rows: Array, lost: Mask) -> Take:
+        """Return the same take with weights, (n, 52), and lost frames, (n,) bool, from `start` as given, to the bit."""
+        weights, now_lost = self.weights.copy(), self.lost.copy()
         weights[start : start + len(rows)] = rows
-        weights.flags.writeable = False
-        return self.with_weights(weights)
+        now_lost[start : start + len(rows)] = lost
+        return replace(self, weights=_owned(weights), lost=_owned(now_lost))
+
+    def with_lost_beside(self, start: int, stop: int) -> tuple[int, int]:
+        """Return the half-open range start to stop, grown over the lost frames that adjoin it."""
+        before, after = np.flatnonzero(~self.lost[:start]), np.flatnonzero(~self.lost[stop:])
+        return int(before[-1]) + 1 if len(before) else 0, stop + int(after[0]) if len(after) else len(self)
 
     def curve(self, shape: str) -> Array:
         """Return the weight curve of one shape, (frames,)."""
@@ -109,6 +137,24 @@ class Take:
             raise EditError(
                 f"There is no shape called {shape!r}.", "Shapes have ARKit names, such as jawOpen."
             ) from None
+
+
+def _owned(array: npt.NDArray[T]) -> npt.NDArray[T]:
+    """Return an array of our own as one that nobody can change any more, which a take need not copy."""
+    array.flags.writeable = False
+    return array
+
+
+def _interpolate(values: Array, lost: Mask, changed: Mask) -> None:
+    """Put lost frames of values, (frames, n), on straight lines, in place, in each run beside a `changed` frame."""
+    for start, stop in runs(lost):
+        first, last = max(start - 1, 0), min(stop, len(values) - 1)
+        if (start, stop) == (0, len(values)) or not changed[first : last + 1].any():
+            continue
+        left = values[first if start > 0 else last]
+        right = values[last if stop < len(values) else first]
+        slope = (right - left) / (stop - start + 1)
+        values[start:stop] = slope * np.arange(1, stop - start + 1)[:, None] + left
 
 
 def runs(mask: Mask) -> list[tuple[int, int]]:

@@ -15,6 +15,8 @@ from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
 from app.session.inference import Inference
 from app.spans.filling import Filling
+from engine.errors import EngineError
+from engine.project.records import FILL
 from engine.take import Array
 
 if TYPE_CHECKING:
@@ -94,9 +96,12 @@ class EditActions(QObject):
         self._session.set_brush(follow=not self._session.follow)
 
     def again(self) -> None:
-        """Take the last edit back and make it again with the settings as they are now."""
+        """Take the last edit back and make it again with the settings as they are now; a fill, as it was made."""
         session = self._session
         step = session.undo.command(session.undo.index() - 1)
+        if isinstance(step, EditCommand) and step.edit.kind == FILL and not self._inference.busy:
+            self._fill_again(step)
+            return
         if not isinstance(step, EditCommand) or step.asked is None or self._inference.busy:
             self.told.emit("the last step asked for no curve")
             return
@@ -104,6 +109,14 @@ class EditActions(QObject):
         self.undo()
         self._inference.ask(start, asked)
         self._inference.finish(step.text(), kind=step.edit.kind, inputs=step.edit.inputs)
+
+    def _fill_again(self, step: EditCommand) -> None:
+        self.undo()
+        try:
+            self._filling.make_again(step.edit.inputs)
+        except EngineError as error:
+            self._session.undo.redo()
+            self._filling.failed.emit(error.sentence, error.advice)
 
     def copy(self) -> None:
         """Remember the weights of the selection, or of the frame at the playhead."""

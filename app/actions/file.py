@@ -16,11 +16,23 @@ from app.session.keeper import Keeper
 from app.session.opening import Opened, Opening, Wish
 from app.settings import Settings
 from engine.errors import EngineError
-from engine.formats import FORMATS, cues, write_take
+from engine.formats import FORMATS, cues, livelink_folder, write_take
+from engine.formats.importing import Imported
+from engine.formats.livelink_folder import CARD
+from engine.formats.reading import Sides
 from engine.project import ENDING
 from engine.take import Take
 
 Answer = QMessageBox.StandardButton
+# What a take is exported as: as it was read, or with left and right of mouth and jaw as the app or by their names.
+SIDES_WRITTEN: dict[str, Sides] = {
+    "": "automatic",
+    ", sides as the app records": "recorded",
+    ", sides as named": "named",
+}
+EXPORTS: dict[str, Sides] = {
+    f"{entry.title}{words} (*{entry.endings[0]})": sides for entry in FORMATS for words, sides in SIDES_WRITTEN.items()
+}
 CAPTURES = (".trc", ".c3d")  # markers may also be in a CSV, but so are takes
 
 
@@ -44,6 +56,7 @@ class FileActions(QObject):
         super().__init__()
         self._session, self._keeper, self._media = session, keeper, media
         self.opening = Opening(session)
+        self.imported: Imported | None = None  # what the file that was opened last says of itself
         self._newest: Wish | None = None  # of those that were read
         self._reopens = False
         self.opening.done.connect(self._confirm)
@@ -84,10 +97,11 @@ class FileActions(QObject):
             opened.drop()  # while its predecessor was being saved, something else was chosen
             return
         path, left_over = opened.wish.path, opened.wish.left_over
+        self.imported = opened.imported
         if opened.project is not None:
             self._keeper.open(opened)
         else:
-            self._session.open(opened.take, path, opened.measured[0])
+            self._session.open(opened.take, opened.path, opened.measured[0])
         if not left_over:
             self._settings.remember(path)
         self.opened.emit()
@@ -100,7 +114,9 @@ class FileActions(QObject):
     def take_in(self, path: Path) -> None:
         """Open or attach a file, by its ending."""
         ending = path.suffix.lower()
-        if ending in media.ENDINGS:
+        if livelink_folder.is_one(path) and livelink_folder.table_of(path) != self._session.path:
+            self.load(path)
+        elif ending in media.ENDINGS:
             self._media.attach("audio", path)
         elif ending in media.FILM_ENDINGS:
             self._media.attach("video", path)
@@ -114,8 +130,14 @@ class FileActions(QObject):
     def open_take(self) -> None:
         """Choose a file to open."""
         endings = " ".join(f"*{ending}" for entry in FORMATS for ending in entry.endings)
-        kinds = f"Takes and projects ({endings} *{ENDING})"
+        kinds = f"Takes and projects ({endings} *.zip {CARD} *{ENDING})"
         name, _ = QFileDialog.getOpenFileName(self._window, "Open", "", kinds)
+        if name:
+            self.load(Path(name))
+
+    def open_folder(self) -> None:
+        """Choose the folder of a take to open, as Live Link Face hands it over."""
+        name = QFileDialog.getExistingDirectory(self._window, "Open a take folder")
         if name:
             self.load(Path(name))
 
@@ -133,15 +155,14 @@ class FileActions(QObject):
     def export(self) -> bool:
         """Choose a file and write the edited take as other programs read it."""
         stem = Path(self._session.name).stem
-        kinds = ";;".join(f"{entry.title} (*{entry.endings[0]})" for entry in FORMATS)
-        name, _ = QFileDialog.getSaveFileName(
-            self._window, "Export the take", self._beside(f"{stem}_edited.csv"), kinds
+        name, kind = QFileDialog.getSaveFileName(
+            self._window, "Export the take", self._beside(f"{stem}_edited.csv"), ";;".join(EXPORTS)
         )
         if not name:
             return False
         path = Path(name) if Path(name).suffix else Path(name).with_suffix(".csv")
         try:
-            write_take(self._session.take, path)
+            write_take(self._session.take, path, EXPORTS.get(kind, "automatic"))
         except EngineError as error:
             self.told.emit(error.sentence, error.advice)
             return False
@@ -152,6 +173,7 @@ class FileActions(QObject):
         """Open what was recorded live, unless edits would be lost."""
 
         def show() -> None:
+            self.imported = None
             self._session.open(take, None)
             self._keeper.keep()
             self.opened.emit()

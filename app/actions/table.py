@@ -33,6 +33,7 @@ class Action:
 
 ACTIONS: tuple[Action, ...] = (
     Action("open_take", "Open…", "File", ("Ctrl+O",), "Open", twin="retake FILE"),
+    Action("open_folder", "Open a take folder…", "File", twin="retake FOLDER"),
     Action("save", "Save project", "File", ("Ctrl+S",), "Save", twin="commands read projects and write takes"),
     Action("save_as", "Save project as…", "File", ("Ctrl+Shift+S",), twin="commands read projects and write takes"),
     Action("export", "Export take…", "File", ("Ctrl+E",), "Export", twin="retake edit -o"),
@@ -42,6 +43,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("detach_video", "Detach the reference video", "File", twin="commands play nothing"),
     Action("locate_media", "Locate missing sound or video…", "File", twin="commands play nothing"),
     Action("attach_visemes", "Attach visemes…", "File", twin="retake fill --visemes"),
+    Action("show_import", "How this take was read", "File", checkable=True, twin="retake info"),
     Action("load_character", "Show on another head…", "File", twin="retake render --character"),
     Action("quit", "Quit", "File", ("Ctrl+Q",), twin="ends the program"),
     Action("undo", "Undo", "Edit", ("Ctrl+Z",), "↶", twin="a command writes a new file; the old one stays"),

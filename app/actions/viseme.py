@@ -39,7 +39,7 @@ class VisemeActions(QObject):
 
     def attach(self, path: Path) -> None:
         """Read a file of phones or mouth cues and lay it beside the open take."""
-        self.reading.submit((path, self._session.original))
+        self.reading.submit((path, self._session.recorded))
 
     def attach_visemes(self) -> None:
         """Choose what is said when: a TextGrid or mouth cues."""
@@ -84,9 +84,9 @@ class VisemeActions(QObject):
         return self._session.visemes
 
     def _arrived(self, request: tuple[Path, Take], read: tuple[VisemeLane, list[str]]) -> None:
-        path, original = request
+        path, recorded = request
         lane, notices = read
-        if original is self._session.original:
+        if recorded is self._session.recorded:
             self._push(lane, f"attach {path.name}")
             if notices:
                 self.failed.emit(" ".join(notices), "")

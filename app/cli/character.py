@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.reading import AUTOMATIC, Fps, ReadSides
 from engine.errors import EditError
 
 if TYPE_CHECKING:
@@ -137,6 +138,8 @@ def drive(
     neutral: Annotated[int, typer.Option(help="For markers: a frame in which the face is at rest.")] = 0,
     unit: Unit = None,
     up: Up = None,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Move a head that needs no shapes by points on its face."""
     import numpy as np
@@ -149,7 +152,7 @@ def drive(
     from engine.spacetime.layout import standard
 
     head = imported(mesh, unit=unit, up=up, names=[], landmarks=[]).character
-    performance = _source(markers, neutral=neutral, unit=None, fps=None)
+    performance = _source(markers, neutral=neutral, unit=None, fps=fps, sides=sides)
     if points is not None:
         followed = markers_layout.read(points, vertices=len(head.neutral))
     else:

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
+from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from engine.errors import EngineError
-from engine.formats import format_of, read_take, write_take
+from engine.formats import format_of, write_take
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
@@ -35,14 +36,17 @@ def clean(
     strength: Annotated[float, typer.Option(help="0 leaves the take as it is, 1 cleans it fully.")] = 1.0,
     frames: Annotated[str | None, typer.Option(help="Only these frames, such as 40:60.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
+    write_sides: WrittenSides = SAME,
 ) -> None:
     """Remove the tracker's noise from a take; frames outside the range stay bit-identical."""
     from engine.clean.takes import clean as clean_take
     from engine.editing import parse_frames
 
-    recorded = read_take(take)
+    recorded = open_take(take, fps, sides)
     cleaned = clean_take(recorded, strength=strength, frames=parse_frames(frames, recorded) if frames else None)
-    write_take(cleaned.take, out)
+    save_take(cleaned.take, out, write_sides)
     start, stop = cleaned.touched
     removed = float(abs(cleaned.removed).max())
     if as_json:
@@ -167,13 +171,15 @@ def replay(
     jitter_ms: Annotated[float, typer.Option(min=0.0, max=1000.0, help="Largest delay of a packet.")] = 0.0,
     repeat: Annotated[bool, typer.Option(help="Play it over and over, until Ctrl+C.")] = False,
     subject: Annotated[str, typer.Option(help="The name that is sent.")] = "Retake",
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Send a take at its own rate, as a phone would."""
     from engine.live.replay import Network
     from engine.live.replay import replay as send
 
     network = Network(loss, reorder, jitter_ms / 1e3)
-    sent = send(read_take(take), _address(to), network, repeat=repeat, subject=subject)
+    sent = send(open_take(take, fps, sides), _address(to), network, repeat=repeat, subject=subject)
     console.print(f"sent {sent} packets to {to}", highlight=False)
 
 

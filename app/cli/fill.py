@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
+from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from engine.errors import EditError, FormatError
-from engine.formats import format_of, read_take, write_take
+from engine.formats import format_of, read_take
 from engine.formats.textfile import read_text
 
 if TYPE_CHECKING:
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
 
 
 def fill(
-    take: Annotated[Path, typer.Argument(help="A take: a Live Link Face CSV.", show_default=False)],
+    take: Annotated[
+        Path, typer.Argument(help="A take: a Live Link Face CSV, folder or zip, or a project.", show_default=False)
+    ],
     out: Annotated[Path, typer.Option("-o", "--out", help="The file to write.", show_default=False)],
     frames: Annotated[
         list[str] | None, typer.Option(help="First frame and the one after the last, such as 40:60; may be repeated.")
@@ -45,6 +48,9 @@ def fill(
     style: Annotated[str, typer.Option(help="auto, bridge (a smooth curve) or perform.")] = "auto",
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Which of the many possible motions.")] = 0,
     variants: Annotated[int, typer.Option(min=1, max=100, help="How many; each is written to a file of its own.")] = 1,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
+    write_sides: WrittenSides = SAME,
 ) -> None:
     """Fill a span with believable motion, steered by as much or as little as is given."""
     from engine.editing import parse_frames
@@ -56,7 +62,7 @@ def fill(
     format_of(out)  # better refused now than after the work
     if bool(frames) == lost:
         raise EditError("Say what to fill.", "Give --frames A:B, or --lost for every lost run.")
-    opened = read_take(take)
+    opened = open_take(take, fps, sides)
     spans = lost_spans(opened) if lost else [parse_frames(text, opened) for text in frames or []]
     if not spans:
         raise EditError(f"{opened.name} has no lost frames.", "Give --frames A:B to fill something else.")
@@ -74,7 +80,7 @@ def fill(
     filled = [fill_spans(opened, spans, request, seed=seed + index) for index in range(variants)]
     for index, one in enumerate(filled):
         path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
-        write_take(one, path)
+        save_take(one, path, write_sides)
         typer.echo(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
 
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from engine.formats import read_take
+from app.cli.reading import AUTOMATIC, Fps, ReadSides, open_take, sides_of
 from engine.take import timecode
 
 if TYPE_CHECKING:
+    from engine.formats.reading import Reading
     from engine.quality import Seen
     from engine.speech.lane import VisemeLane
     from engine.take import Take
@@ -30,12 +31,16 @@ def flags(
         Path | None, typer.Option(help="What is said when, so that lips which should meet are looked for.")
     ] = None,
     visemes_offset: Annotated[float, typer.Option(help="Second of the take at which that file begins.")] = 0.0,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
 ) -> None:
     """List frames to look at: spikes, frozen and lost ones, impossible faces, lips that stay open, what was not reached."""
     from engine.formats.atomic import write_bytes
+    from engine.formats.reading import Reading
     from engine.quality import flags_of
 
-    seen = _seen(take, read_take(original) if original else None, _lane(visemes, visemes_offset))
+    reading = Reading(fps, sides_of(sides))
+    seen = _seen(take, reading, open_take(original, fps, sides) if original else None, _lane(visemes, visemes_offset))
     found = flags_of(seen)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
@@ -60,17 +65,20 @@ def _lane(path: Path | None, offset_s: float) -> VisemeLane | None:
     return shifted(attached(cues, path.name), offset_s) if cues else None
 
 
-def _seen(path: Path, original: Take | None, lane: VisemeLane | None) -> Seen:
+def _seen(path: Path, reading: Reading, original: Take | None, lane: VisemeLane | None) -> Seen:
     """Return what there is to look at; a project brings its own original, asked curves and visemes."""
+    from engine.formats import livelink, read_take
     from engine.project import ENDING, Project, replay
     from engine.quality import seen_of
 
     if path.suffix.lower() != ENDING:
-        return seen_of(read_take(path), original, visemes=lane)
+        return seen_of(read_take(path, reading=reading), original, visemes=lane)
     project = Project.open(path)
     try:
         state = replay(project.contents)
-        return seen_of(state.take, original or project.contents.original, state.asked, lane or state.visemes)
+        shown = livelink.reread(state.take, reading, keep=True)
+        before = original or livelink.reread(project.contents.original, reading, keep=True)
+        return seen_of(shown, before, state.asked, lane or state.visemes)
     finally:
         project.close()
 

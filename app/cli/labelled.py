@@ -47,7 +47,7 @@ def retarget(performance: Source, character: Path | None, labels: Path | None) -
             f"{labels.name} is for the head {name!r}, which does not lie beside it.", "Name the head with --character."
         )
     target = bundled() if path is None else character_of(path)
-    guess = performance.take if performance.take.weights.any() else carry(performance, target)
+    guess = carry(performance, target) if performance.is_capture else performance.take
     poses: dict[int, Mapping[str, float] | Array] = dict(asked.labels)
     return retarget_weights(guess, poses, source=_features(performance)), target
 
@@ -59,9 +59,9 @@ def _read(path: Path) -> LabelFile:
 
 
 def _features(performance: Source) -> Array:
-    """Return what tells frames apart, (frames, D): weights where they are known, else where the markers are."""
+    """Return what tells frames apart, (frames, D): the weights of a take, or where a capture's markers are."""
     from engine.spacetime.source import bridge
 
-    if performance.take.weights.any():
-        return performance.take.weights
-    return bridge(performance.displacements)[0].reshape(len(performance), -1)
+    if performance.is_capture:
+        return bridge(performance.displacements)[0].reshape(len(performance), -1)
+    return performance.take.weights

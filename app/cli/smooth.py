@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from app.cli.takes import Out, TakeFile
-from engine.formats import read_take, write_take
 
 
 def smooth(
@@ -16,14 +16,17 @@ def smooth(
     out: Out,
     cutoff: Annotated[float, typer.Option(help="Cutoff frequency in Hz.")],
     frames: Annotated[str | None, typer.Option(help="First frame and the one after the last; all without it.")] = None,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
+    write_sides: WrittenSides = SAME,
 ) -> None:
     """Low-pass all weights, shifting nothing in time; the range's ends are feathered."""
     from engine import retouch
     from engine.editing import parse_frames
 
-    opened = read_take(Path(take))
+    opened = open_take(Path(take), fps, sides)
     chosen = parse_frames(frames, opened) if frames else (0, len(opened))
-    write_take(retouch.smooth(opened, chosen, cutoff).apply(opened), out)
+    save_take(retouch.smooth(opened, chosen, cutoff).apply(opened), out, write_sides)
     typer.echo(f"smoothed frames {chosen[0]}:{chosen[1]} at {cutoff:g} Hz; wrote {out}")
 
 

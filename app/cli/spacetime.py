@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli import labelled
+from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from engine.errors import EditError
 from engine.formats.content import require_file, unread
 
@@ -42,16 +43,18 @@ def pin(
     closure: Annotated[
         float | None, typer.Option(help="How firmly lips and lids that meet keep meeting; 0 lets go.")
     ] = None,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
+    write_sides: WrittenSides = SAME,
 ) -> None:
     """Pin a pose at a frame and let it spread over a range."""
     from dataclasses import replace
 
     from engine.editing import parse_frames
-    from engine.formats import read_take, write_take
     from engine.spacetime import pin as pins
     from engine.take import SHAPES
 
-    source = read_take(take)
+    source = open_take(take, fps, sides)
     named = assignments(weights)
     if controls:
         if free:
@@ -64,7 +67,7 @@ def pin(
         pins.Spreading() if closure is None else replace(pins.Spreading(), closure=_strength("closure", closure))
     )
     edited = pins.pin(source, {frame: named}, parse_frames(frames, source), whole=not free, spreading=spreading)
-    write_take(edited, out)
+    save_take(edited, out, write_sides)
     print(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
 
 
@@ -82,20 +85,18 @@ def retarget(
     ] = None,
     neutral: Annotated[int, typer.Option(help="For markers: a frame in which the face is at rest.")] = 0,
     unit: Annotated[str | None, typer.Option(help="For markers: mm, cm or m, where the file does not say.")] = None,
-    fps: Annotated[
-        float | None, typer.Option(help="For markers: frames per second, where the file does not say.")
-    ] = None,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
     alpha: Annotated[float | None, typer.Option(help="How much likely poses count.")] = None,
     beta: Annotated[float | None, typer.Option(help="How much places count beside movements.")] = None,
     closure: Annotated[float | None, typer.Option(help="How firmly lips and lids meet where the source's do.")] = None,
     unbounded: Annotated[bool, typer.Option("--unbounded", help="Let weights leave 0..1.")] = False,
+    write_sides: WrittenSides = SAME,
 ) -> None:
     """Carry markers or a take to another character."""
-    from engine.formats import write_take
-
     if method is not Method.MANIFOLD and (labels is not None or suggest is not None):
         raise EditError("Labelled frames belong to the other method.", "Add --method manifold.")
-    performance = _source(source, neutral=neutral, unit=unit, fps=fps)
+    performance = _source(source, neutral=neutral, unit=unit, fps=fps, sides=sides)
     if suggest is not None:
         print(*labelled.suggest(performance, suggest, labels), sep="\n")
         return
@@ -106,7 +107,7 @@ def retarget(
     else:
         matching = _matching(alpha=alpha, beta=beta, closure=closure, unbounded=unbounded)
         made, target = _carried(performance, character, landmarks, matching)
-    write_take(made, out)
+    save_take(made, out, write_sides)
     for notice in made.notices:
         print(notice)
     print(f"Moved {target.name} by {len(made)} frames of {source.name}. Written to {out}.")
@@ -140,18 +141,18 @@ def _carried(
     return carry(performance, target, layout=layout, matching=matching), target
 
 
-def _source(path: Path, *, neutral: int, unit: str | None, fps: float | None) -> Source:
+def _source(path: Path, *, neutral: int, unit: str | None, fps: float | None, sides: str) -> Source:
     from engine.character import bundled
-    from engine.formats import markers, read_take
+    from engine.formats import markers
     from engine.spacetime.source import from_markers, from_take
 
     if path.suffix.lower() in markers.ENDINGS and not _is_take(path):
         return from_markers(markers.read(path, unit=unit, fps=fps), neutral_frame=neutral)
-    return from_take(read_take(path), bundled())
+    return from_take(open_take(path, fps, sides), bundled())
 
 
 def _is_take(path: Path) -> bool:
-    """Return whether a file begins as a Live Link Face take does; a CSV may also hold markers."""
+    """Whether a file begins as a Live Link Face take does; a CSV may also hold markers."""
     require_file(path)
     try:
         with path.open("rb") as file:

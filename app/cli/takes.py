@@ -8,22 +8,30 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from app.cli.tables import show
 from engine.errors import EditError
-from engine.formats import read_take, write_take
 from engine.take import runs, timecode
 
-TakeFile = Annotated[Path, typer.Argument(help="A take: a Live Link Face CSV.", show_default=False)]
+TakeFile = Annotated[
+    Path, typer.Argument(help="A take: a Live Link Face CSV, folder or zip, or a project.", show_default=False)
+]
 Out = Annotated[Path, typer.Option("-o", "--out", help="The file to write.", show_default=False)]
 
 
 def info(
-    take: TakeFile, as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False
+    take: TakeFile,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Say what a take holds: length, rate, lost spans, the reach of its controls."""
     from engine.controls import CONTROLS, measure
+    from engine.formats import livelink
+    from engine.formats.importing import imported, in_words
+    from engine.formats.reading import Reading
 
-    opened = read_take(take)
+    opened = open_take(take, fps, sides)
     measured = measure(opened.weights)
     rows = [
         {"name": control.name, "unit": control.unit, "lowest": float(curve.min()), "highest": float(curve.max())}
@@ -35,6 +43,10 @@ def info(
             f"{opened.name}: {len(opened):,} frames at {opened.fps:g} fps, {timecode(opened.duration_s, opened.fps)}"
         )
         typer.echo(f"{int(opened.lost.sum()):,} frames lost; head {'recorded' if opened.has_head else 'not recorded'}")
+        if (origin := imported(opened)) is not None:
+            swapped = livelink.read_as(opened).swapped
+            why = origin.rate_reason(opened.fps, Reading(fps))
+            typer.echo(f"rate: {why}; sides: {in_words(swapped)} ({origin.sides_reason(swapped=swapped)})")
         for notice in opened.notices:
             typer.echo(notice)
     show(f"{opened.name}, {len(opened)} frames, {opened.fps:g} fps", rows, as_json=as_json)
@@ -52,6 +64,9 @@ def edit(
     follow: Annotated[
         bool, typer.Option("--follow/--keep", help="Whether the other controls go along, or hold it back.")
     ] = True,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
+    write_sides: WrittenSides = SAME,
 ) -> None:
     """Change one control over a range of frames; the whole face follows."""
     from engine.controls import bundled_measurer, control_index
@@ -62,10 +77,10 @@ def edit(
     given = [(kind, amount) for kind, amount in kinds.items() if amount is not None]
     if len(given) != 1:
         raise EditError("Say what becomes of the control.", "Give one of --set, --add or --scale.")
-    opened = read_take(take)
+    opened = open_take(take, fps, sides)
     column, (start, stop) = control_index(control), parse_frames(frames, opened)
     patch = edit_control(opened, control, (start, stop), *given[0], exact_curve=exact, follow=follow)
-    write_take(patch.apply(opened), out)
+    save_take(patch.apply(opened), out, write_sides)
     measured = bundled_measurer().measure(opened.weights[patch.start : patch.stop])
     reached = patch.reached[start - patch.start : stop - patch.start, column]
     typer.echo(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} mm")
@@ -82,11 +97,13 @@ def render(
     compare: Annotated[Path | None, typer.Option(help="Another take to draw at its right.")] = None,
     character: Annotated[Path | None, typer.Option(help="A head to draw it on; the bundled one without.")] = None,
     size: Annotated[int, typer.Option(help="Height in pixels.", min=64, max=4096)] = 720,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Draw a take: a PNG of one frame, or an MP4 of all of it."""
     from app.preview import movie
 
-    shown = [read_take(path) for path in (take, compare) if path is not None]
+    shown = [open_take(path, fps, sides) for path in (take, compare) if path is not None]
     if frame is not None and not all(0 <= frame < len(each) for each in shown):
         raise EditError(f"Frame {frame} is not within the take, which has {min(map(len, shown))} frames.")
     if character is not None:

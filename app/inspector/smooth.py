@@ -39,7 +39,7 @@ class SmoothSection(Section):
         self.cutoff.setValue(tenths / 10)
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE:
+        if change & (Change.TAKE | Change.READING):
             self._show()
 
     def _show(self) -> None:

@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.background import LatestWins
 from app.playback.clock import AudioClock, Sink, WallClock
 from app.playback.device import open_device
+from app.playback.packed import unpacked
 from app.playback.transport import Transport
 from app.playback.video import Video
 from app.session import MEDIA, Change, Session
@@ -25,6 +26,7 @@ from engine.project import Media as Record
 ENDINGS = audio.ENDINGS
 FILM_ENDINGS = film.ENDINGS
 REST_MS = 400  # after the last nudge: then it is one finished step
+PACKED = ".zip"
 WORDS = {"audio": "sound", "video": "video"}
 
 
@@ -191,7 +193,7 @@ class Media(QObject):
         """Read what lies beside a recorded take; a project says itself what belongs to it."""
         if take is None or take.suffix.lower() == ENDING:
             return
-        filmed = film.beside(take)
+        filmed = take if take.suffix.lower() == PACKED else film.beside(take)
         found = audio.beside(take) or filmed  # phones record the sound with the picture
         for kind, path in (("audio", found), ("video", filmed)):
             if path is not None:
@@ -224,8 +226,10 @@ class Media(QObject):
 
     # --- what came of reading
 
-    def _arrived(self, wanted: _Wanted, result: _Read | Found) -> None:
+    def _arrived(self, wanted: _Wanted, result: _Read | Found | None) -> None:
         """Show what was read, unless its take is closed or has got something else in the meantime."""
+        if result is None:
+            return  # there was nothing beside the take
         now = self._session.marks.medium(wanted.kind)
         if wanted.opening != self._opening or (wanted.record is not None and now is None):
             return
@@ -277,7 +281,8 @@ class Media(QObject):
 
     def _refused(self, wanted: _Wanted, sentence: str, advice: str) -> None:
         """Say what is wrong, but not that a film found beside the take is silent."""
-        found_film = wanted.path is not None and wanted.path.suffix.lower() in film.ENDINGS and wanted.kind == "audio"
+        films = (*film.ENDINGS, PACKED)
+        found_film = wanted.path is not None and wanted.path.suffix.lower() in films and wanted.kind == "audio"
         if wanted.opening == self._opening and (wanted.by_hand or not found_film):
             self.failed.emit(sentence, advice)
 
@@ -305,9 +310,14 @@ class Media(QObject):
             self._transport.clock.scrubs = self._scrubs
 
 
-def _read(wanted: _Wanted) -> _Read | Found:
-    """Find a file by its content, or take the one that was chosen, and read it; runs on the media's thread."""
+def _read(wanted: _Wanted) -> _Read | Found | None:
+    """Find a file by its content, or take the one that was chosen, and read it; runs on the media's thread.
+
+    None where a zip holds no film.
+    """
     record, path = wanted.record, wanted.path
+    if path is not None and path.suffix.lower() == PACKED and (path := unpacked(path)) is None:
+        return None
     if path is None:
         assert record is not None
         found = project.find(record, wanted.folders[0], wanted.folders[1:]) if wanted.folders else Found(record, None)

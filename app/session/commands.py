@@ -10,8 +10,10 @@ from PySide6.QtGui import QUndoCommand
 
 from app.session.session import MEDIA, Session
 from engine.controls import bundled_measurer
+from engine.formats.reading import ReadAs
 from engine.project import (
     MARK,
+    READING,
     Contents,
     Edit,
     Marks,
@@ -20,12 +22,15 @@ from engine.project import (
     change_between,
     mark_edit,
     marks_of,
+    read_as_of,
+    reading_edit,
     viseme_edit,
 )
 from engine.speech.lane import VisemeLane
 
 if TYPE_CHECKING:
     from engine.editing import Patch
+    from engine.project import Before
     from engine.take import Array
 
 
@@ -53,12 +58,15 @@ class EditCommand(QUndoCommand):
     ) -> None:
         super().__init__(title)
         self._marks = (session.marks, marks) if marks is not None else None
-        rows = slice(patch.start, patch.stop)
+        patch = patch.settled(session.take)
+        assert patch.lost is not None
+        rows, take = slice(patch.start, patch.stop), session.take
         self._session, self._start = session, patch.start
-        self._before = (session.take.weights[rows].copy(), session.controls[rows].copy(), session.asked[rows].copy())
-        asked = np.where(patch.asked != self._before[1], patch.asked, self._before[2])
-        self._after = (patch.weights, patch.reached, asked)
-        self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {})
+        had = session.asked[rows].copy()
+        self._before = (take.weights[rows].copy(), session.controls[rows].copy(), had, take.lost[rows].copy())
+        asked = np.where(patch.asked != self._before[1], patch.asked, had)
+        self._after = (patch.weights, patch.reached, asked, patch.lost)
+        self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {}, patch.lost)
 
     @property
     def asked(self) -> tuple[int, Array] | None:
@@ -74,15 +82,16 @@ class EditCommand(QUndoCommand):
         return self._before[1], self._before[2]
 
     @classmethod
-    def restored(cls, session: Session, edit: Edit, before: tuple[Array, Array]) -> EditCommand:
-        """Return the command of a stored edit, which replaced `before`: (n, 52) weights and (n, 8) asked values."""
+    def restored(cls, session: Session, edit: Edit, before: Before) -> EditCommand:
+        """Return the command of a stored edit, which replaced `before`: (n, 52) weights, (n, 8) asked values, lost frames."""
         command = cls.__new__(cls)
         QUndoCommand.__init__(command, edit.title)
         measure = bundled_measurer().measure
         command._session, command._start, command.edit = session, edit.start, edit
         command._marks = None
-        command._before = (before[0], measure(before[0]), before[1])
-        command._after = (edit.weights, measure(edit.weights), edit.asked)
+        weights, asked, lost = before
+        command._before = (weights, measure(weights), asked, lost)
+        command._after = (edit.weights, measure(edit.weights), edit.asked, edit.still_lost(weights, lost))
         return command
 
     def redo(self) -> None:
@@ -174,6 +183,39 @@ class VisemesCommand(QUndoCommand):
         self._session.set_visemes(self._change.inverse.applied(self._session.visemes))
 
 
+class ReadingCommand(QUndoCommand):
+    """Reads the open take with another rate or other sides; the edits stay, and undoing goes back to the bit.
+
+    Parameters
+    ----------
+    session : whose take
+    reading : what it becomes
+    title : what the user did, as the Undo menu shows it
+    """
+
+    def __init__(self, session: Session, reading: ReadAs, title: str) -> None:
+        super().__init__(title)
+        self._session, self._before, self._after = session, session.reading, reading
+        self.edit = reading_edit(title, self._before, reading)
+
+    @classmethod
+    def restored(cls, session: Session, edit: Edit) -> ReadingCommand:
+        """Return the command of a stored edit."""
+        command = cls.__new__(cls)
+        QUndoCommand.__init__(command, edit.title)
+        command._session, command.edit = session, edit
+        command._before, command._after = read_as_of(edit.inputs["before"]), read_as_of(edit.inputs["after"])
+        return command
+
+    def redo(self) -> None:
+        """Do it, first or again."""
+        self._session.read_as(self._after)
+
+    def undo(self) -> None:
+        """Take it back."""
+        self._session.read_as(self._before)
+
+
 def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[QUndoCommand]:
     """Yield the commands of a project's edits, oldest first."""
     for edit, before, change in zip(contents.edits, state.before, state.changes, strict=True):
@@ -181,5 +223,7 @@ def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[
             yield VisemesCommand.restored(session, edit, change)
         elif edit.kind == MARK:
             yield MarkCommand.restored(session, edit)
+        elif edit.kind == READING:
+            yield ReadingCommand.restored(session, edit)
         else:
             yield EditCommand.restored(session, edit, before)

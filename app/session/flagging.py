@@ -60,7 +60,7 @@ class Flagging(QObject):
         self._work.stop()
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE:
+        if change & (Change.TAKE | Change.READING):
             self._known, self._touched = None, []
             self._submit((0, len(self._session.take)))
         elif change & Change.CURVES:

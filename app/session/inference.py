@@ -158,7 +158,7 @@ class Inference(QObject):
         self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE:
+        if change & (Change.TAKE | Change.READING):
             self._last = self._title = None
         modes = {"exact": self._session.exact, "follow": self._session.follow}
         if change & Change.TOOL and self.busy and self._curves is not None and modes != self._modes:

@@ -218,7 +218,7 @@ class Keeper(QObject):
 
     def _keep(self, _: int = 0) -> None:
         stored = self._project and self._project.contents
-        if self._opening or (stored and stored.original is not self._session.original):
+        if self._opening or (stored and stored.original is not self._session.recorded):
             return  # another take is being opened
         if stored and stored.edits and self._session.undo.count() == 0:
             return  # only opening empties the stack: undoing leaves its steps there

@@ -14,7 +14,8 @@ from app.session.commands import restored
 from app.session.session import Session
 from engine.controls import bundled_measurer
 from engine.errors import EngineError
-from engine.formats import read_take
+from engine.formats import livelink_folder, read_take
+from engine.formats.importing import Imported, imported
 from engine.project import ENDING, Project, Replayed, replay
 from engine.take import Array, Take
 
@@ -35,6 +36,8 @@ class Opened:
     ----------
     wish : what was asked for
     take : the take as it was recorded
+    path : of the file that its frames are in
+    imported : what that file says of itself
     measured : its controls, (frames, 8) mm, and those of the take as edited
     project : the open project; None where the file is a take
     state, steps : what the edits of a project come to, and their commands
@@ -42,6 +45,8 @@ class Opened:
 
     wish: Wish
     take: Take
+    path: Path
+    imported: Imported | None
     measured: tuple[Array, Array]
     project: Project | None = None
     state: Replayed | None = None
@@ -58,19 +63,20 @@ def opened(session: Session, wish: Wish, report: Callable[[float], None] = lambd
     report(0.0)
     if not wish.left_over and wish.path.suffix.lower() != ENDING:
         take = read_take(wish.path, report)
-        return Opened(wish, take, 2 * (_measured(take),))
+        return Opened(wish, take, livelink_folder.table_of(wish.path), imported(take), 2 * (_measured(take),))
     project = Project.open(wish.path)
     try:
         report(0.0)
         contents = project.contents
         state = replay(contents)
-        measured = _measured(contents.original), _measured(state.take)
+        measured = _measured(state.original or contents.original), _measured(state.take)
         steps = tuple(restored(session, contents, state))
         report(1.0)
     except BaseException:
         project.close()
         raise
-    return Opened(wish, contents.original, measured, project, state, steps)
+    origin = imported(contents.original)
+    return Opened(wish, contents.original, wish.path, origin, measured, project, state, steps)
 
 
 def _measured(take: Take) -> Array:

@@ -15,10 +15,13 @@ from app.session.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from engine import quality
 from engine.character import Character
 from engine.controls import CONTROLS, bundled_measurer
+from engine.formats import livelink
 from engine.formats.audio import Audio
+from engine.formats.reading import ReadAs
 from engine.project import Contents, Marks, Replayed, Span
+from engine.project.records import FILL
 from engine.speech.lane import VisemeLane
-from engine.take import Array, Take, runs
+from engine.take import Array, Mask, Take, runs
 
 if TYPE_CHECKING:
     from engine.editing import Patch
@@ -47,6 +50,7 @@ class Change(Flag):
     VISEMES = auto()  # what is said when
     FLAGS = auto()  # what was found automatically
     CHARACTER = auto()  # whose head the weights are for
+    READING = auto()  # the frame rate, or the sides of mouth and jaw, that the take is read with
 
 
 class Session(QObject):
@@ -54,8 +58,10 @@ class Session(QObject):
 
     Attributes
     ----------
-    take : as edited so far
-    original : as opened
+    take : as edited so far; its lost frames are those that nothing has given motion yet
+    recorded : as opened
+    original : the same, read as it is read by now
+    reading : what that is
     controls : (frames, 8) mm, measured on `take`
     original_controls : (frames, 8) mm, measured on `original`
     asked : (frames, 8) mm, what the edits asked for; NaN where nothing was asked
@@ -94,11 +100,11 @@ class Session(QObject):
 
     def open(self, take: Take, path: Path | None, measured: Array | None = None) -> None:
         """Replace everything by a take, whose controls may have been measured before, (frames, 8) in mm."""
-        self.take = self.original = take
+        self.take = self.original = self.recorded = take
+        self.reading = livelink.read_as(take)
         self.path = path
         if measured is None:
-            measured = bundled_measurer().measure(take.weights)
-            measured.flags.writeable = False
+            measured = _measured(take)
         self.controls = self.original_controls = measured
         self.asked = np.full_like(measured, np.nan)
         self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
@@ -129,7 +135,7 @@ class Session(QObject):
     ) -> None:
         """Replace everything by what a project holds: its edits as `steps`, which come to `state`.
 
-        The controls, (frames, 8) in mm, are `measured` of the original and of that state.
+        The controls, (frames, 8) in mm, are `measured` of the original as it is read there, and of that state.
         """
         self.blockSignals(True)
         self._restoring = True
@@ -143,6 +149,8 @@ class Session(QObject):
             self._restoring = False
             self.blockSignals(False)
         self.take, self.asked, self.marks = state.take, state.asked, contents.marks
+        self.original = state.original or contents.original
+        self.reading = state.reading or self.reading
         self.visemes = state.visemes
         self.controls = measured[1]
         self.changed.emit(Change.TAKE)
@@ -152,7 +160,18 @@ class Session(QObject):
         edits = [getattr(self.undo.command(index), "edit", None) for index in range(self.undo.count())]
         undone = sum(edit is not None for edit in edits[self.undo.index() :])
         kept = tuple(edit for edit in edits if edit is not None)
-        return Contents(self.original, kept, len(kept) - undone, self.marks)
+        return Contents(self.recorded, kept, len(kept) - undone, self.marks)
+
+    @property
+    def filled(self) -> Mask:
+        """Which frames, (frames,) bool, fills in effect have made."""
+        filled = np.zeros(len(self.take), bool)
+        contents = self.contents()
+        for edit in contents.edits[: contents.position]:
+            if edit.kind == FILL:
+                start, stop = edit.inputs.get("frames", (edit.start, edit.stop))
+                filled[start:stop] = True
+        return filled
 
     def set_marks(self, marks: Marks) -> None:
         """Put other spans, pins, notes, media or another verdict in place."""
@@ -166,6 +185,20 @@ class Session(QObject):
         if visemes is not self.visemes and not self._restoring:
             self.visemes = visemes
             self.changed.emit(Change.VISEMES)
+
+    def read_as(self, reading: ReadAs) -> None:
+        """Read the open take with another rate or other sides, its edits with it; for commands only."""
+        if self._restoring:
+            return  # what the steps come to is known
+        exchanged = reading.swapped != self.reading.swapped
+        self.take, self.original = livelink.put(self.take, reading), livelink.put(self.original, reading)
+        self.reading = reading
+        if exchanged:
+            self.controls, self.original_controls = _measured(self.take), _measured(self.original)
+        self.draft = None
+        self.touched = (0, len(self.take))
+        told = Change.READING | Change.CURVES | Change.DRAFT | Change.VIEW | Change.MARKS | Change.MEDIA
+        self.changed.emit(told | Change.VISEMES | Change.PLAYHEAD | Change.SELECTION)
 
     def set_flags(self, flags: tuple[quality.Flag, ...]) -> None:
         """Show what was found automatically."""
@@ -237,12 +270,12 @@ class Session(QObject):
             return float(drafted[frame - draft.start])
         return float(self.curve(lane)[frame])
 
-    def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array) -> None:
-        """Put rows of weights, controls and asked values in place; for commands only."""
+    def replace_rows(self, start: int, weights: Array, controls: Array, asked: Array, lost: Mask) -> None:
+        """Put rows of weights, controls, asked values and lost frames in place; for commands only."""
         if self._restoring:
             return  # what the steps come to is known
         stop = start + len(weights)
-        self.take = self.take.with_rows(start, weights)
+        self.take = self.take.with_exact_rows(start, weights, lost)
         self.controls = _with_rows(self.controls, start, controls)
         self.asked = _with_rows(self.asked, start, asked)
         self.draft = None
@@ -359,6 +392,12 @@ class Session(QObject):
         if follow is not None:
             self.follow = follow
         self.changed.emit(Change.TOOL)
+
+
+def _measured(take: Take) -> Array:
+    controls = bundled_measurer().measure(take.weights)
+    controls.flags.writeable = False
+    return controls
 
 
 def _with_rows(array: Array, start: int, rows: Array) -> Array:

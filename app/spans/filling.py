@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,10 @@ from app.background import LatestWins
 from app.session import Change, Session
 from app.session.commands import EditCommand
 from engine.controls import CONTROLS
+from engine.inpaint.request import Request, Style
+from engine.inpaint.stored import restored, stored
 from engine.project import Span
+from engine.project.records import FILL
 from engine.speech.visemes import Cue
 from engine.take import Array, Take
 
@@ -24,31 +28,16 @@ VARIANTS = 6
 
 @dataclass(frozen=True, eq=False)
 class FillRequest:
-    """What is filled, with what; as `engine.inpaint.fill.fill` takes it."""
+    """A take, what steers the fill of one of its spans, and the seed of the first variant."""
 
     take: Take
-    span: Span
-    pins: dict[int, dict[str, float]]
-    controls: dict[str, Array]
-    guide: Take | None
-    guide_offset: int
-    style: str
+    steering: Request
     seed: int
-    visemes: tuple[Cue, ...] = ()
 
     @property
     def inputs(self) -> dict[str, Any]:
-        """What a project file remembers, so that the fill can be made again."""
-        return {
-            "frames": [self.span.start, self.span.stop],
-            "region": self.span.region,
-            "pins": {str(frame): pose for frame, pose in self.pins.items()},
-            "controls": sorted(self.controls),
-            "guide": self.guide.name if self.guide else "",
-            "guide_offset": self.guide_offset,
-            "visemes": [[cue.start_s, cue.stop_s, cue.label] for cue in self.visemes],
-            "style": self.style,
-        }
+        """What a project file remembers, so that the fill can be made again bit for bit."""
+        return stored(self.steering)
 
 
 class Filling(QObject):
@@ -70,7 +59,8 @@ class Filling(QObject):
         self.seed = 0
         self.busy = False
         self._request: FillRequest | None = None
-        self._work = LatestWins(_make, name="fill")
+        self._seen: tuple[int, int] | None = None  # the span whose variants were shown last
+        self._work = LatestWins(_variants, name="fill")
         self._work.done.connect(self._arrived)
         self._work.failed.connect(self._refused)
         session.changed.connect(self._on_change)
@@ -83,29 +73,58 @@ class Filling(QObject):
     @property
     def chosen_seed(self) -> int:
         """What the variant that is shown was drawn from; with the same steering it gives the same motion."""
-        return (self._request.seed if self._request else self.seed) + self.chosen
+        return self._first_seed + self.chosen
+
+    @property
+    def title(self) -> str:
+        """What to call the variant that is shown; others that are asked for count on."""
+        if len(self.variants) == 1:
+            return "A smooth bridge: there is only one"
+        return f"Variant {self.chosen_seed + 1} · seed {self.chosen_seed}"
+
+    @property
+    def _first_seed(self) -> int:
+        return self._request.seed if self._request else self.seed
 
     def start(
         self,
         span: Span,
         *,
-        style: str = "auto",
+        style: Style = "auto",
         guide: Take | None = None,
         guide_offset: int = 0,
         keep_curves: bool = False,
         keep_visemes: bool = False,
     ) -> None:
-        """Make variants for a span; pins that lie in it are met.
+        """Make variants for a span, others than were shown of it before; pins that lie in it are met.
 
         With `keep_curves` its asked curves are followed, with `keep_visemes` the mouth says what the visemes lane does.
         """
         session = self._session
         inside = [pin for pin in session.marks.pins if span.start <= pin.frame < span.stop]
-        pins = {pin.frame: dict(pin.weights) for pin in inside}
-        controls = self._asked(span) if keep_curves else {}
-        self.busy = True
-        visemes = self.said(span) if keep_visemes else ()
-        self._request = FillRequest(session.take, span, pins, controls, guide, guide_offset, style, self.seed, visemes)
+        others = [(other.start, other.stop) for other in session.marks.spans if other != span]
+        filled = session.filled
+        steering = Request(
+            frames=(span.start, span.stop),
+            region=span.region,
+            pins={pin.frame: dict(pin.weights) for pin in inside},
+            guide=guide,
+            guide_offset=guide_offset,
+            visemes=self.said(span) if keep_visemes else (),
+            controls=self._asked(span) if keep_curves else {},
+            style=style,
+            besides=tuple(others),
+            unmade=tuple((start, stop) for start, stop in others if not filled[start:stop].all()),
+        )
+        self._make(steering, self.seed + VARIANTS * (self._seen == steering.frames))
+
+    def make_again(self, inputs: Mapping[str, Any]) -> None:
+        """Make variants of a fill that was kept, the kept one first; raises `EditError` where it cannot be told how."""
+        self._make(restored(inputs), int(inputs.get("seed", 0)))
+
+    def _make(self, steering: Request, seed: int) -> None:
+        self.busy, self.seed = True, seed
+        self._request = FillRequest(self._session.take, steering, seed)
         self._work.submit(self._request)
         self.changed.emit()
 
@@ -117,11 +136,7 @@ class Filling(QObject):
     def again(self) -> None:
         """Make other variants of the same span, steered by the same."""
         if self._request is not None:
-            self.seed += VARIANTS
-            self.busy = True
-            self._request = replace(self._request, seed=self.seed)
-            self._work.submit(self._request)
-            self.changed.emit()
+            self._make(self._request.steering, self.seed + VARIANTS)
 
     def choose(self, index: int) -> None:
         """Show a variant, counted around."""
@@ -135,11 +150,11 @@ class Filling(QObject):
         if not self.variants or self._request is None:
             return
         request, patch = self._request, self.variants[self.chosen]
-        frames = request.span.stop - request.span.start
+        start, stop = request.steering.frames
         inputs = {**request.inputs, "seed": self.chosen_seed}
         self._forget()
-        title = f"fill {frames} frames"
-        self._session.undo.push(EditCommand(self._session, patch, title, kind="fill", inputs=inputs))
+        title = f"fill {stop - start} frames"
+        self._session.undo.push(EditCommand(self._session, patch, title, kind=FILL, inputs=inputs))
 
     def drop(self) -> None:
         """Keep none."""
@@ -166,8 +181,8 @@ class Filling(QObject):
     def _arrived(self, request: FillRequest, patches: list[Patch]) -> None:
         if request is not self._request or request.take is not self._session.take:
             return
-        self.variants, self.busy = patches, False
-        self._session.move_playhead((request.span.start + request.span.stop) // 2)
+        self.variants, self.busy, self._seen = patches, False, request.steering.frames
+        self._session.move_playhead(sum(request.steering.frames) // 2)
         self.choose(0)
 
     def _refused(self, request: FillRequest, sentence: str, advice: str) -> None:
@@ -175,26 +190,16 @@ class Filling(QObject):
         self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE or (change & Change.CURVES and self.variants):
+        if change & Change.TAKE:
+            self.seed, self._seen = 0, None
+        if change & (Change.TAKE | Change.READING) or (change & Change.CURVES and self.variants):
             self._forget()
 
 
-def _make(request: FillRequest) -> list[Patch]:
+def _variants(request: FillRequest) -> list[Patch]:
     from engine.editing import Patch
-    from engine.inpaint.fill import fill
+    from engine.inpaint.fill import refill
 
-    span = request.span
-    fills = fill(
-        request.take,
-        (span.start, span.stop),
-        region=span.region,
-        pins=request.pins,
-        guide=request.guide,
-        guide_offset=request.guide_offset,
-        visemes=request.visemes,
-        controls=request.controls,
-        style=request.style,  # type: ignore[arg-type]  # the section offers only what there is
-        seed=request.seed,
-        variants=1 if request.style == "bridge" else VARIANTS,
-    )
-    return [Patch.between(request.take, made.take, made.span) for made in fills]
+    fills = refill(request.take, request.steering, seeds=range(request.seed, request.seed + VARIANTS))
+    different = fills[:1] if fills[0].style == "bridge" else fills  # there is one smooth curve
+    return [Patch.between(request.take, made.take, made.span) for made in different]

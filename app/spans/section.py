@@ -24,6 +24,7 @@ from app.spans.strip import Strip
 from app.widgets.section import Section, empty, quiet
 from engine.errors import EngineError
 from engine.formats import read_take
+from engine.inpaint.request import Style
 from engine.project import Span
 from engine.take import Take, timecode
 
@@ -36,7 +37,7 @@ REGIONS = {
     "left side": "left",
     "right side": "right",
 }
-STYLES = {"as fits the length": "auto", "a performance": "perform", "a smooth bridge": "bridge"}
+STYLES: dict[str, Style] = {"as fits the length": "auto", "a performance": "perform", "a smooth bridge": "bridge"}
 
 
 class SpansSection(Section):
@@ -100,6 +101,8 @@ class SpansSection(Section):
         self.visemes.setChecked(True)
         self.guide_button = QPushButton("Guide by a take…")
         self.guide_button.setToolTip("Another take of the same rate, such as a rough one from a webcam.")
+        self.unguide_button = QPushButton("Without the guide")
+        self.unguide_button.setToolTip("Fill without following the other take.")
         self.guide_shift = QSpinBox(minimum=-999_999, maximum=999_999)
         self.guide_shift.setToolTip("How many frames later in the guide the same moment lies.")
         self._shift_row = _named("Guide is ahead by", self.guide_shift, "frames")
@@ -113,6 +116,7 @@ class SpansSection(Section):
             self.curves,
             self.visemes,
             self.guide_button,
+            self.unguide_button,
             self._shift_row,
             self.fill_button,
             self.remove_button,
@@ -120,8 +124,10 @@ class SpansSection(Section):
         ):
             box.addWidget(widget)
         self._shift_row.hide()
+        self.unguide_button.hide()
         self.region.activated.connect(self._set_region)
         self.guide_button.clicked.connect(self._choose_guide)
+        self.unguide_button.clicked.connect(lambda: self.guide_by(None))
         self.fill_button.clicked.connect(self.fill)
         self.remove_button.clicked.connect(self.unmark)
 
@@ -181,18 +187,23 @@ class SpansSection(Section):
 
     def _choose_guide(self) -> None:
         name, _ = QFileDialog.getOpenFileName(self, "A take to follow", "", "Takes (*.csv)")
-        self.guide_by(Path(name) if name else None)
+        if name:
+            self.guide_by(Path(name))
 
     def guide_by(self, path: Path | None) -> None:
-        """Let fills follow a take, or none."""
+        """Let fills follow a take, or none; where it cannot be read, the guide stays as it was."""
         try:
             self._guide = read_take(path) if path else None
         except EngineError as error:
             self.refused.emit(error.sentence, error.advice)
         self.guide_button.setText(f"Guide: {self._guide.name}" if self._guide else "Guide by a take…")
-        self._shift_row.setVisible(self._guide is not None)
+        for widget in (self._shift_row, self.unguide_button):
+            widget.setVisible(self._guide is not None)
 
     def _on_change(self, change: Change) -> None:
+        if change & Change.TAKE:
+            self.guide_by(None)  # it was for the take before
+            self.guide_shift.setValue(0)
         if change & (Change.TAKE | Change.MARKS | Change.SELECTION | Change.VISEMES):
             self._show_list()
             self._show()
@@ -223,7 +234,8 @@ class SpansSection(Section):
         made = bool(filling.variants)
         for widget in (self.strip, self.seed, self.accept_button, self.again_button, self.drop_button):
             widget.setVisible(made)
-        self.seed.setText(f"Variant {filling.chosen + 1} of {len(filling.variants)} · seed {filling.chosen_seed}")
+        self.seed.setText(filling.title)
+        self.again_button.setEnabled(len(filling.variants) > 1)
         self.strip.show_variants(filling.variants, filling.chosen)
         self.fill_button.setText("Filling…" if filling.busy else "Fill")
         self.fill_button.setEnabled(not filling.busy)

@@ -28,6 +28,7 @@ from app.clean.section import CleanSection
 from app.curves.lane import GUTTER_PX
 from app.curves.panel import CurvesPanel
 from app.curves.tools import TOOLS
+from app.importing.line import ImportLine
 from app.inspector.brush import BrushSection
 from app.inspector.facts import FactsSection
 from app.inspector.media import MediaSection
@@ -55,6 +56,8 @@ from app.window.keyboard import Keyboard
 from app.window.missing import MissingMedia
 from app.window.notices import Notices
 from app.window.status import StatusBar
+from engine.formats.importing import imported
+from engine.performance import demo
 from engine.take import Take
 
 
@@ -88,6 +91,7 @@ class MainWindow(QMainWindow):
         self.sound = MediaActions(self.session, self.media, self)
         self.status = StatusBar(self.session, self.keeper, self.files.opening, self.media)
         self.notices, self.missing = Notices(), MissingMedia()
+        self.importing = ImportLine(self.session)
         self.preview = PreviewPanel(self.session, self.inference)
         self.reference = ReferencePanel(self.session)
         self.curves = CurvesPanel(self.session, self.inference, self.colours)
@@ -127,9 +131,11 @@ class MainWindow(QMainWindow):
         self._show_tool()
         self._lay_out()
         self._connect()
+        self._connect_importing()
         self.preferences.apply_all()
         self.resize(1440, 900)
         self.session.open(take, path)
+        self.files.imported = imported(take)
         self._show_opened()
 
     # --- building
@@ -178,6 +184,7 @@ class MainWindow(QMainWindow):
         column.addWidget(self.menus.toolbar())
         column.addWidget(self.notices)
         column.addWidget(self.missing)
+        column.addWidget(self.importing)
         column.addLayout(middle, 1)
         column.addWidget(self.status)
         self.setCentralWidget(central)
@@ -234,6 +241,11 @@ class MainWindow(QMainWindow):
         self._show_filling()
         self._keyboard = Keyboard(self, self.preview)
 
+    def _connect_importing(self) -> None:
+        self.importing.refused.connect(self.notices.tell)
+        self.importing.chosen.connect(self.curves.setFocus)
+        self.importing.hide_button.clicked.connect(self._show_importing)
+
     def _connect_media(self) -> None:
         self.media.missing_changed.connect(self._show_missing)
         self.missing.locate.connect(self.sound.locate)
@@ -259,9 +271,22 @@ class MainWindow(QMainWindow):
     def _show_opened(self) -> None:
         self.transport.run(0.0)
         self.notices.hide()
-        self.status["notice"].setText(" ".join(self.session.take.notices))
         self._show_title()
         self.status.show_take()
+        from_file = self.keeper.path is None and self.session.path not in (None, demo.BUNDLED)
+        self.importing.tell(self.files.imported, shown=from_file)
+        there = from_file and self.importing.there  # it has what was noticed
+        self.status["notice"].setText("" if there else " ".join(self.session.take.notices))
+        self._show_importing()
+
+    def show_import(self) -> None:
+        """Show or hide how the open take was read."""
+        self.importing.setVisible(self.importing.there and self.importing.isHidden())
+        self._show_importing()
+
+    def _show_importing(self) -> None:
+        self.actions_by_name["show_import"].setEnabled(self.importing.there)
+        self.actions_by_name["show_import"].setChecked(not self.importing.isHidden())
 
     def _show_saved(self, *_: object) -> None:
         self.notices.hide()

@@ -87,6 +87,8 @@ class StatusBar(QFrame):
         self["speed"].setText(f"drag → preview {np.median(self._latencies_ms):.0f} ms")
 
     def _on_change(self, change: Change) -> None:
+        if change & Change.READING:
+            self.show_take()
         if change & (Change.TAKE | Change.PLAYHEAD):
             self.show_place()
         if change & (Change.TAKE | Change.CURVES | Change.SAVED):

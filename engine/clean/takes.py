@@ -23,7 +23,7 @@ class Cleaned:
 
     Attributes
     ----------
-    take : cleaned; frames outside `touched` are bit-identical
+    take : cleaned; known frames outside `touched` are bit-identical, and lost ones inside it are lost no more
     removed : (frames, 52) what was taken off the weights
     lag_ms : by how much the cleaned span trails the recorded one; NaN where nothing moves
     touched : half-open range of frames
@@ -69,7 +69,8 @@ def clean(
     share = strength * _feather(len(take), start, stop, FEATHER_S * take.fps)[start:stop, None]
     weights[start:stop] += share * (estimate[start - first :] - weights[start:stop])
     lag = lag_ms(weights[start:stop], take.weights[start:stop], times_s[start - first :])
-    return Cleaned(take.with_weights(weights), take.weights - weights, lag, (start, stop))
+    cleaned = take.with_rows(start, weights[start:stop])
+    return Cleaned(cleaned, take.weights - cleaned.weights, lag, (start, stop))
 
 
 def run(weights: Array, lost: Mask, times_s: Array, cleaner: Cleaner, progress: Progress = lambda share: None) -> Array:

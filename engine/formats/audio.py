@@ -187,7 +187,9 @@ def _binned(values: Bins, size: int) -> Bins:
 
 def beside(take: Path) -> Path | None:
     """Return the recording that lies beside a take under its name, or None."""
-    names = {f"{take.stem}{extra}{ending}".casefold() for extra in BESIDE for ending in ENDINGS}
+    names = {
+        f"{stem}{extra}{ending}".casefold() for stem in film.stems_of(take) for extra in BESIDE for ending in ENDINGS
+    }
     try:
         found = sorted(entry for entry in take.parent.iterdir() if entry.name.casefold() in names and entry.is_file())
     except OSError:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from av.container import InputContainer
 
 ENDINGS = (".mov", ".mp4", ".m4v", ".mkv", ".webm", ".avi")
+TABLES = ("_cal", "_raw", "_neutral")  # what the app adds to a take's name for its files
 FAMILIES = "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi"  # no play lists: those name other files and addresses
 FARTHEST_S = 1e7
 MAX_BYTES = 1 << 44  # a film is never read whole
@@ -55,9 +56,28 @@ def moving(file: InputContainer) -> list[Any]:
 
 
 def beside(take: Path) -> Path | None:
-    """Return the film that lies beside a take under its name, or None."""
-    names = {f"{take.stem}{ending}".casefold() for ending in ENDINGS}
+    """Return the film that lies beside a take under its name, or None: `X.mov` or `X_iPhone.mov` beside `X_cal.csv`."""
+    found = {path.name.casefold(): path for path in _films(take.parent)}
+    names = (f"{stem}{ending}" for stem in stems_of(take) for ending in ENDINGS)
+    return next((found[name] for name in names if name in found), None)
+
+
+def stems_of(take: Path) -> list[str]:
+    """Return the names, without endings and in small letters, that sound and film of a take may have, its own first."""
+    stem, common = take.stem.casefold(), common_stem(take.stem)
+    return list(dict.fromkeys([stem, *(stem.removesuffix(kind) for kind in TABLES), common, f"{common}_iphone"]))
+
+
+def common_stem(stem: str) -> str:
+    """Return the name that the files of one take have in common: `x` of `X_cal`, `X_iPhone` and `X_iPhone_raw`."""
+    name = stem.casefold()
+    for kind in TABLES:
+        name = name.removesuffix(kind)
+    return name.removesuffix("_iphone")
+
+
+def _films(folder: Path) -> list[Path]:
     try:
-        return min((p for p in take.parent.iterdir() if p.name.casefold() in names and p.is_file()), default=None)
+        return sorted(path for path in folder.iterdir() if path.suffix.lower() in ENDINGS and path.is_file())
     except OSError:
-        return None
+        return []

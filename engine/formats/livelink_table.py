@@ -9,19 +9,23 @@ import numpy as np
 
 from engine.errors import FormatError
 from engine.formats.decimals import floats
+from engine.formats.livelink_origin import Places
 from engine.take import Array, Mask
 
 BLOCK_BYTES = 1 << 18  # of text read at once: it stays in the cache, and nobody waits for more than one
 COMMA, NEWLINE = b",\n"
+Rows = tuple[list[bytes], Array, Mask, Places]
 
 
-def table(
-    content: bytes, first: int, header: list[str], path: Path, report: Callable[[float], None] | None
-) -> tuple[list[bytes], Array, Mask]:
-    """Split rows into timecodes and (rows, cells - 2) values; a row of two cells with count 0 is a lost frame."""
+def table(content: bytes, first: int, header: list[str], path: Path, report: Callable[[float], None] | None) -> Rows:
+    """Split rows into timecodes, (rows, cells - 2) values, lost ones, and where each begins and the last one ends.
+
+    A row whose count is 0 is a lost frame, however many cells follow: spreadsheets and pandas fill them up.
+    """
     timecodes: list[bytes] = []
     values: list[Array] = []
     lost: list[Mask] = []
+    starts: list[Places] = []
     stop = _end(content, first)
     while first < stop:
         end = content.find(b"\n", min(first + BLOCK_BYTES, stop), stop) % (stop + 1)
@@ -29,12 +33,16 @@ def table(
         timecodes += block[0]
         values.append(block[1])
         lost.append(block[2])
+        starts.append(block[3] + first)
         if report is not None:
             report(end / stop)
         first = end + 1
     if not timecodes:
         raise FormatError(f"{path.name} has a header but no frames.")
-    return timecodes, np.concatenate(values), np.concatenate(lost)
+    ended = content.find(b"\n", stop) + 1 or len(content)
+    if not content[stop:ended].isspace():  # only the line ending belongs to the last row
+        ended = stop
+    return timecodes, np.concatenate(values), np.concatenate(lost), np.concatenate([*starts, [ended]])
 
 
 def _end(content: bytes, first: int) -> int:
@@ -46,7 +54,7 @@ def _end(content: bytes, first: int) -> int:
     return stop - len(tail) + len(tail.rstrip())
 
 
-def _block(block: bytes, cells: int, row: int, path: Path, *, last: bool) -> tuple[list[bytes], Array, Mask]:
+def _block(block: bytes, cells: int, row: int, path: Path, *, last: bool) -> Rows:
     """Split whole rows of text, the first of them the row `row` of the file, like `table`."""
     text = np.frombuffer(block, np.uint8)
     ends = np.flatnonzero((text == COMMA) | (text == NEWLINE))
@@ -56,10 +64,10 @@ def _block(block: bytes, cells: int, row: int, path: Path, *, last: bool) -> tup
     counts = closing - opening + 1
     spans = zip(starts[opening].tolist(), ends[opening].tolist(), strict=True)
     timecodes = [block[begin:end].strip() for begin, end in spans]
-    lost = counts == 2
-    for index in np.flatnonzero(lost | (counts != cells)).tolist():
-        lost[index] = lost[index] and block[ends[opening[index]] + 1 : ends[closing[index]]].strip() == b"0"
-        if not lost[index] and counts[index] != cells:
+    lost = _without_face(block, starts[np.minimum(opening + 1, closing)], ends[np.minimum(opening + 1, closing)])
+    lost &= counts > 1
+    for index in np.flatnonzero(counts != cells).tolist():
+        if not lost[index]:
             raise FormatError(
                 f"{path.name} has {counts[index]} cells in row {row + index} where its header has {cells}.",
                 "The file may be cut off or damaged." if last and index == len(counts) - 1 else "",
@@ -75,4 +83,12 @@ def _block(block: bytes, cells: int, row: int, path: Path, *, last: bool) -> tup
         raise FormatError(
             f"{path.name} has {shown!r} for a number in row {row + np.flatnonzero(~lost)[seen]}, column {column + 3}."
         ) from None
-    return timecodes, values, lost
+    return timecodes, values, lost, starts[opening]
+
+
+def _without_face(block: bytes, starts: Places, ends: Places) -> Mask:
+    """Return which cells of text, (n,) each, hold the number 0."""
+    zero: Mask = np.isin(np.frombuffer(block, np.uint8)[starts], np.frombuffer(b'0 "', np.uint8))
+    for index in np.flatnonzero(zero).tolist():
+        zero[index] = block[starts[index] : ends[index]].strip(b' \t\r"') in (b"0", b"0.0", b"0.", b"00")
+    return zero

@@ -19,7 +19,7 @@ from engine.inpaint.seams import REACH_FRAMES, bridged, land
 from engine.models.resample import interpolate
 from engine.pose import Pose
 from engine.speech.visemes import Cue, classes_over, one_hot
-from engine.take import MODEL_FPS, SHAPES, Array, Mask, Take, runs
+from engine.take import MODEL_FPS, Array, Mask, Take, runs
 
 BRIDGE_S = 0.25  # up to here a smooth curve through the seams is closer to what was there than a performance
 _CONTEXT = 60  # model frames on either side that the network looks at
@@ -34,7 +34,7 @@ class Fill:
 
     Attributes
     ----------
-    take : the take with the span filled; everything outside it is as it was, bit for bit
+    take : the take with the span filled and not lost any more; known frames outside it are as they were, bit for bit
     span : half-open range of frames that was filled
     seed : which of the many possible motions this is
     style : "bridge" for a smooth curve, "perform" for the network's motion
@@ -89,12 +89,8 @@ def refill(
     *,
     seeds: Sequence[int] = (0,),
     filler: Filler | None = None,
-    besides: Sequence[tuple[int, int]] = (),
 ) -> list[Fill]:
-    """Fill a span as `request` says, once per seed; raises `EditError` as `fill` does.
-
-    `besides` are further spans that are to be made, and lend no motion to this one.
-    """
+    """Fill a span as `request` says, once per seed; raises `EditError` as `fill` does."""
     if not len(seeds):
         raise EditError("At least one variant must be asked for.")
     request = checked(request, take)
@@ -104,7 +100,7 @@ def refill(
     if style == "bridge":
         made = np.repeat(bridged(gap.known)[None], len(seeds), axis=0)
     else:
-        gap = gap if gap.guided.any() else replace(gap, rest=_rest(take, [request.frames, *besides]))
+        gap = gap if gap.guided.any() else replace(gap, rest=_rest(take, [request.frames, *request.besides]))
         made = (filler or bundled()).fill(gap, seeds=seeds)
     return [
         Fill(_placed(take, request, motion, window), request.frames, seed, style, request)
@@ -124,10 +120,12 @@ def fill_spans(take: Take, spans: Sequence[tuple[int, int]], request: Request, *
     stray = [frame for frame in request.pins if not any(start <= frame < stop for start, stop in ordered)]
     if stray:
         raise EditError(f"The pin at frame {stray[0]} lies outside the span.", "Pins steer frames of the span.")
-    for start, stop in ordered:
+    for index, (start, stop) in enumerate(ordered):
         inside = {frame: pose for frame, pose in request.pins.items() if start <= frame < stop}
-        part = replace(request, frames=(start, stop), pins=inside)
-        take = refill(take, part, seeds=(seed,), besides=ordered)[0].take
+        part = replace(
+            request, frames=(start, stop), pins=inside, besides=tuple(ordered), unmade=tuple(ordered[index + 1 :])
+        )
+        take = refill(take, part, seeds=(seed,))[0].take
     return take
 
 
@@ -180,6 +178,7 @@ def _gap(take: Take, request: Request, window: _Window) -> Gap:
     known = interpolate(take.weights, window.at)
     inside = (window.at > start - 1) & (window.at < stop)
     known[np.ix_(inside, shapes)] = np.nan
+    known[interpolate(_unknown(take, request).astype(np.float64)[:, None], window.at)[:, 0] > 0] = np.nan
     for frame, pose in request.poses().items():
         row = window.nearest(frame)
         known[row] = np.where(np.isfinite(pose) & np.isnan(known[row]), pose, known[row])
@@ -192,6 +191,15 @@ def _gap(take: Take, request: Request, window: _Window) -> Gap:
     moved = [Cue(cue.start_s - shift, cue.stop_s - shift, cue.label) for cue in request.visemes]
     classes = np.where(inside, classes_over(moved, frames=window.frames, fps=MODEL_FPS), -1)
     return gap_of(known, guide=guide, visemes=one_hot(classes), controls=_controls(request, window, inside))
+
+
+def _unknown(take: Take, request: Request) -> Mask:
+    """Return which frames, (frames,), nobody knows anything of: lost ones, and further spans that are not filled yet."""
+    unknown: Mask = take.lost.copy()
+    for start, stop in request.unmade:
+        unknown[start:stop] = True
+    unknown[slice(*request.frames)] &= take.lost[slice(*request.frames)]
+    return unknown
 
 
 def _rest(take: Take, spans: Sequence[tuple[int, int]]) -> list[Array]:
@@ -223,6 +231,7 @@ def _placed(take: Take, request: Request, motion: Array, window: _Window) -> Tak
     first, last = max(0, start - _SEAM), min(len(take), stop + _SEAM)
     known = take.weights[first:last].copy()
     known[np.ix_(np.arange(start, stop) - first, shapes)] = np.nan
+    known[take.lost[first:last]] = np.nan  # they follow the fill, not the fill them
     for frame, pose in request.poses().items():
         row = known[frame - first]
         known[frame - first] = np.where(np.isnan(row), pose, row)
@@ -231,17 +240,15 @@ def _placed(take: Take, request: Request, motion: Array, window: _Window) -> Tak
         if window.pace == 1
         else _resampled(motion, window, first, last)
     )
-    if window.pace != 1:
+    there = np.isfinite(known)
+    if there.any() and not np.array_equal(
+        made[there], known[there]
+    ):  # another rate, or a span beside it is not filled yet
         made = land(made, known, reach_frames=REACH_FRAMES * window.pace, hold=_closures(made))
-        made = np.where(np.isnan(known), np.clip(made, 0.0, 1.0), known)
+        made = np.where(there, known, np.clip(made, 0.0, 1.0))
     rows = take.weights[start:stop].copy()
     rows[:, shapes] = made[start - first : stop - first][:, shapes]
-    filled = take.with_rows(start, rows)
-    if len(shapes) < len(SHAPES) or not take.lost[start:stop].any():
-        return filled
-    lost = take.lost.copy()
-    lost[start:stop] = False
-    return replace(filled, lost=lost)
+    return take.with_rows(start, rows, found=np.ones(stop - start, bool))
 
 
 def _resampled(motion: Array, window: _Window, first: int, last: int) -> Array:

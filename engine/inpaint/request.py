@@ -17,15 +17,23 @@ from engine.take import SHAPES, Array, Take
 
 LOWEST, HIGHEST = -0.1, 1.1  # recorded weights stray a little outside 0..1
 FARTHEST_MM = 1000.0  # more than this is a slip; far more would overflow
+Frames = tuple[int, int]
 Style = Literal["auto", "bridge", "perform"]
 STYLES: tuple[Style, ...] = ("auto", "bridge", "perform")
 
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """What steers a fill; see `fill` for the meaning of each. `lost` allows spans of a single frame."""
+    """What steers a fill; see `fill` for the meaning of most.
 
-    frames: tuple[int, int]
+    Attributes
+    ----------
+    lost : allows spans of a single frame
+    besides : further spans that are marked for work: they lend no motion to this one
+    unmade : those among them that are not filled yet: beside this one they are no more known than lost frames
+    """
+
+    frames: Frames
     region: str = "face"
     pins: Mapping[int, Pose] = field(default_factory=dict)
     guide: Take | None = None
@@ -34,6 +42,8 @@ class Request:
     controls: Mapping[str, Array | float] = field(default_factory=dict)
     style: Style = "auto"
     lost: bool = False
+    besides: tuple[Frames, ...] = ()
+    unmade: tuple[Frames, ...] = ()
 
     def poses(self) -> dict[int, Array]:
         """Return pins as (52,) weights by frame, NaN where a shape is free."""

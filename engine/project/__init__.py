@@ -3,6 +3,7 @@
 from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (
     MARK,
+    READING,
     VISEMES,
     Contents,
     Edit,
@@ -14,15 +15,19 @@ from engine.project.records import (
     Summary,
     mark_edit,
     marks_of,
+    read_as_of,
+    reading_edit,
 )
-from engine.project.replaying import Replayed, replay
+from engine.project.replaying import Before, Replayed, replay
 from engine.project.store import ENDING, InUseError, Project, create, delete, peek
 from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
 __all__ = [
     "ENDING",
     "MARK",
+    "READING",
     "VISEMES",
+    "Before",
     "Contents",
     "Edit",
     "Found",
@@ -46,6 +51,8 @@ __all__ = [
     "name_of",
     "peek",
     "placed",
+    "read_as_of",
+    "reading_edit",
     "replay",
     "viseme_edit",
 ]

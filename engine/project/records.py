@@ -10,10 +10,14 @@ from typing import Any
 import numpy as np
 
 from engine.controls import CONTROLS
-from engine.take import SHAPES, Array, Take
+from engine.formats.reading import ReadAs, Reading
+from engine.take import SHAPES, Array, Mask, Take
 
 MARK = "mark"  # kind of an edit whose inputs are marks before and after
+FILL = "fill"  # kind of an edit that gave every one of its frames motion
 VISEMES = "visemes"  # kind of an edit whose inputs are a step on the visemes lane
+FASTEST_FPS = 10_000.0
+READING = "reading"  # kind of an edit whose inputs are how the take is read before and after
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +32,7 @@ class Edit:
     weights : (frames, 52) what the edit put in place; no frames where it changed none
     asked : (frames, 8) mm, what had been asked for up to and including this edit; NaN where nothing was
     inputs : what the edit was made from, as JSON can hold it, so that it can be run again
+    lost : (frames,) bool, which of its frames are lost after it; None in projects that did not say so yet
     """
 
     kind: str
@@ -36,11 +41,19 @@ class Edit:
     weights: Array
     asked: Array
     inputs: Mapping[str, Any] = field(default_factory=dict)
+    lost: Mask | None = None
 
     @property
     def stop(self) -> int:
         """The frame after the last."""
         return self.start + len(self.weights)
+
+    def still_lost(self, weights: Array, lost: Mask) -> Mask:
+        """Return which of its frames are lost after it, (frames,), where it found these weights and these lost frames."""
+        if self.lost is not None:
+            return self.lost
+        kept: Mask = lost & (self.weights == weights).all(axis=1)
+        return np.zeros_like(kept) if self.kind == FILL else kept
 
 
 @dataclass(frozen=True)
@@ -126,6 +139,23 @@ def mark_edit(title: str, before: Marks, after: Marks) -> Edit:
     """Return the edit that changes marks and no frame."""
     rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
     return Edit(MARK, title, 0, *rows, {"before": asdict(before), "after": asdict(after)})
+
+
+def reading_edit(title: str, before: ReadAs, after: ReadAs) -> Edit:
+    """Return the edit that changes how the take is read and no frame."""
+    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
+    return Edit(READING, title, 0, *rows, {"before": asdict(before), "after": asdict(after)})
+
+
+def read_as_of(stored: Mapping[str, Any]) -> ReadAs:
+    """Return a reading from what `dataclasses.asdict` made of it.
+
+    Raises `KeyError`, `TypeError` or `EditError` for anything else.
+    """
+    fps, swapped = stored["fps"], stored["swapped"]
+    if type(swapped) is not bool or type(fps) is not float or not 0.0 < fps <= FASTEST_FPS:
+        raise TypeError("a reading has a rate, and sides that are exchanged or not")
+    return ReadAs(Reading(**stored["chosen"]), fps, swapped)
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.controls import CONTROLS
-from engine.project.records import VISEMES, Contents, Edit
+from engine.formats import livelink
+from engine.formats.livelink_sides import exchange
+from engine.formats.reading import ReadAs
+from engine.project.records import READING, VISEMES, Contents, Edit, read_as_of
 from engine.project.visemes import VisemeChange, change_of
 from engine.speech.lane import VisemeLane
-from engine.take import Array, Take
+from engine.take import Array, Mask, Take
+
+Before = tuple[Array, Array, Mask]
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,34 +27,49 @@ class Replayed:
     ----------
     take : with the edits up to the position
     asked : (frames, 8) mm, NaN where nothing was asked
-    before : of each edit the (frames, 52) weights and (frames, 8) asked values that it found
+    before : of each edit the (frames, 52) weights, (frames, 8) asked values and (frames,) lost frames that it found
     visemes : the lane in effect, if there is one
     changes : of each edit what it did to that lane, None where it did nothing
+    original : the take as it was opened, read as it is read by now
+    reading : what that is; None where it is read as it was opened
     """
 
     take: Take
     asked: Array
-    before: tuple[tuple[Array, Array], ...]
+    before: tuple[Before, ...]
     visemes: VisemeLane | None = None
     changes: tuple[VisemeChange | None, ...] = ()
+    original: Take | None = None
+    reading: ReadAs | None = None
 
 
 def replay(contents: Contents) -> Replayed:
     """Return the state at the project's position, bit for bit as it was left."""
-    weights = contents.original.weights.copy()
+    original = contents.original
+    weights, lost = original.weights.copy(), original.lost.copy()
     asked = np.full((len(weights), len(CONTROLS)), np.nan)
-    before: list[tuple[Array, Array]] = []
-    shown = (weights.copy(), asked.copy())
+    before: list[Before] = []
+    shown = (weights.copy(), asked.copy(), lost.copy())
+    reading: ReadAs | None = None
     for index, edit in enumerate(contents.edits):
         rows = slice(edit.start, edit.stop)
-        before.append((weights[rows].copy(), asked[rows].copy()))
+        before.append((weights[rows].copy(), asked[rows].copy(), lost[rows].copy()))
+        lost[rows] = edit.still_lost(weights[rows], lost[rows])
         weights[rows], asked[rows] = edit.weights, edit.asked
-        if index < contents.position:
-            shown[0][rows], shown[1][rows] = edit.weights, edit.asked
+        in_effect = index < contents.position
+        if in_effect:
+            shown[0][rows], shown[1][rows], shown[2][rows] = edit.weights, edit.asked, lost[rows]
+        if edit.kind == READING:
+            found, wanted = (read_as_of(edit.inputs[which]) for which in ("before", "after"))
+            if found.swapped != wanted.swapped:
+                for curves in (weights, *([shown[0]] if in_effect else [])):
+                    curves[:] = exchange(curves)
+            reading = wanted if in_effect else reading
     for array in shown:
         array.flags.writeable = False
-    take = contents.original.with_weights(shown[0])
-    return Replayed(take, shown[1], tuple(before), *said(contents.edits, contents.position))
+    original = contents.original if reading is None else livelink.put(contents.original, reading)
+    take = replace(original, weights=shown[0], lost=shown[2])
+    return Replayed(take, shown[1], tuple(before), *said(contents.edits, contents.position), original, reading)
 
 
 def said(edits: Iterable[Edit], position: int = 0) -> tuple[VisemeLane | None, tuple[VisemeChange | None, ...]]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any
 
@@ -12,16 +13,32 @@ import numpy as np
 
 from engine.controls import CONTROL_INDEX, CONTROLS
 from engine.errors import EngineError
-from engine.formats.livelink import DAY_S, MAX_COLUMNS, Origin
-from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
-from engine.project.records import MARK, Contents, Edit, Marks, Media, Note, Pin, Span, Summary, marks_of
+from engine.formats.livelink import MAX_COLUMNS
+from engine.formats.livelink_origin import Origin
+from engine.formats.livelink_timecode import DAY_S
+from engine.project.blobs import Budget, DamagedError, pack, unpack
+from engine.project.origins import read_origin, write_origin
+from engine.project.records import (
+    MARK,
+    READING,
+    Contents,
+    Edit,
+    Marks,
+    Media,
+    Note,
+    Pin,
+    Span,
+    Summary,
+    marks_of,
+    read_as_of,
+)
 from engine.project.soundness import MAX_MARKS, MAX_NAME, MAX_WEIGHT, moment, require, require_marks, require_visemes
+from engine.project.tables import insert
 from engine.take import SHAPES, Array, Take
 
 MAX_FRAMES = 1_000_000  # over four hours at 60 fps
 MIN_FPS, MAX_FPS = 0.01, 10_000.0
 MAX_EDITS = 10_000_000  # they are counted against the memory, too
-MAX_DECIMALS = 17
 JSON_BYTES = 32  # that a character of JSON may grow to when it is read
 ROTATIONS = 9
 
@@ -67,8 +84,9 @@ def write_edits(database: sqlite3.Connection, first: int, edits: Iterable[Edit])
     names = json.dumps([control.name for control in CONTROLS])
     for place, edit in enumerate(edits, first):
         inputs = json.dumps(dict(edit.inputs), default=_plain)
-        blobs = pack(edit.weights), names, pack(edit.asked)
-        _insert(database, "edits", (place, edit.kind, edit.title, inputs, edit.start, len(edit.weights), *blobs))
+        lost = None if edit.lost is None else pack(edit.lost)
+        blobs = pack(edit.weights), names, pack(edit.asked), lost
+        insert(database, "edits", (place, edit.kind, edit.title, inputs, edit.start, len(edit.weights), *blobs))
 
 
 def write_marks(database: sqlite3.Connection, marks: Marks) -> None:
@@ -94,27 +112,9 @@ def write_state(database: sqlite3.Connection, contents: Contents) -> None:
 
 def _write_take(database: sqlite3.Connection, take: Take) -> None:
     blobs = pack(take.weights), pack(take.lost), pack(take.rotations)
-    _insert(database, "take", (1, take.name, take.fps, take.start_s, len(take), *blobs))
-    origin = take.origin
-    if isinstance(origin, Origin):
-        timecodes = b"\n".join(origin.timecodes)
-        lines = len(origin.timecodes), len(timecodes), pack(np.frombuffer(timecodes, "u1"))
-        arrays = pack(origin.rows), pack(origin.values), pack(origin.lost)
-        how = origin.decimals, origin.newline, int(origin.swapped)
-        _insert(database, "origin", (1, json.dumps(origin.header), *lines, *arrays, *how))
-
-
-def _insert(database: sqlite3.Connection, table: str, row: Sequence[object]) -> None:
-    """Add a row with its number first; room is made for what comes in pieces, which is then filled piece by piece."""
-    marks = ["zeroblob(?)" if isinstance(value, list) else "?" for value in row]
-    values = [sum(map(len, value)) if isinstance(value, list) else value for value in row]
-    database.execute(f"INSERT INTO {table} VALUES ({', '.join(marks)})", values)
-    columns = [column for column, *_ in database.execute(f"SELECT * FROM {table} LIMIT 0").description]
-    for column, value in zip(columns, row, strict=True):
-        if isinstance(value, list):
-            with database.blobopen(table, column, row[0]) as blob:  # type: ignore[arg-type]
-                for piece in value:
-                    blob.write(piece)
+    insert(database, "take", (1, take.name, take.fps, take.start_s, len(take), *blobs))
+    if isinstance(take.origin, Origin) and take.origin.fits(take) and np.array_equal(take.origin.weights, take.weights):
+        write_origin(database, take.origin)
 
 
 def _read_take(database: sqlite3.Connection, budget: Budget) -> Take:
@@ -128,41 +128,19 @@ def _read_take(database: sqlite3.Connection, budget: Budget) -> Take:
     rotations = unpack(blobs[2], (frames, ROTATIONS), "<f8", budget)
     require(_possible(weights) and _possible(rotations), "a weight or rotation is not a finite number")
     lost = unpack(blobs[1], (frames,), "u1", budget) != 0
-    origin = _read_origin(database, frames, budget)
-    return Take(weights=weights, fps=fps, lost=lost, rotations=rotations, name=name, start_s=start_s, origin=origin)
+    take = Take(weights=weights, fps=fps, lost=lost, rotations=rotations, name=name, start_s=start_s)
+    return replace(take, origin=read_origin(database, take, budget))
 
 
 def _possible(values: Array) -> bool:
     return bool((np.abs(values) <= MAX_WEIGHT).all())
 
 
-def _read_origin(database: sqlite3.Connection, frames: int, budget: Budget) -> Origin | None:
-    row = database.execute(
-        "SELECT header, rows, timecode_bytes, timecodes, frames, recorded, lost, decimals, newline, swapped FROM origin"
-    ).fetchone()
-    if row is None:
-        return None
-    header, count, timecode_bytes, *blobs, decimals, newline, swapped = row
-    names = _texts(header, budget)
-    require(2 < len(names) <= MAX_COLUMNS and 1 <= count <= frames, "the file it came from is not possible")
-    require(not any("," in name or "\n" in name for name in names), "the file it came from is not possible")
-    require(timecode_bytes >= 0, "a timecode is missing")
-    timecodes = tuple(unpack_bytes(blobs[0], timecode_bytes, budget).split(b"\n"))
-    rows = unpack(blobs[1], (count,), "<i8", budget)
-    values = unpack(blobs[2], (count, len(names) - 2), "<f8", budget)
-    lost = unpack(blobs[3], (count,), "u1", budget) != 0
-    require(len(timecodes) == count and not any(b"," in code for code in timecodes), "a timecode is missing")
-    require(bool((np.diff(rows) > 0).all()) and rows[0] >= 0 and rows[-1] < frames, "its rows are out of order")
-    require(_possible(values) and not lost.all(), "a recorded value is not a finite number")
-    require(0 <= decimals <= MAX_DECIMALS and newline in (b"\n", b"\r\n"), "the file it came from is not possible")
-    return Origin(names, timecodes, rows.astype(np.int64), values, lost, decimals, newline, bool(swapped))
-
-
 def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> Iterable[Edit]:
     found = database.execute(
-        "SELECT place, kind, title, inputs, start, frames, weights, controls, asked FROM edits ORDER BY place"
+        "SELECT place, kind, title, inputs, start, frames, lost, weights, controls, asked FROM edits ORDER BY place"
     )
-    for index, (place, kind, title, inputs, start, frames, weights, controls, asked) in enumerate(found):
+    for index, (place, kind, title, inputs, start, frames, lost, weights, controls, asked) in enumerate(found):
         require(index < MAX_EDITS and len(kind) <= MAX_NAME and len(title) <= MAX_NAME, "an edit is not described")
         require(place == index and start >= 0 and 0 <= frames <= length - start, "an edit is out of place")
         rows = unpack(weights, (frames, len(SHAPES)), "<f8", budget)
@@ -172,7 +150,11 @@ def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> It
         if kind == MARK:
             for marks in ("before", "after"):
                 require_marks(_marks_in(made_from, marks), length)
-        yield Edit(kind, title, start, rows, _read_asked(asked, _texts(controls, budget), frames, budget), made_from)
+        if kind == READING:
+            _require_readings(made_from)
+        asked_rows = _read_asked(asked, _texts(controls, budget), frames, budget)
+        still = None if lost is None else unpack(lost, (frames,), "u1", budget) != 0
+        yield Edit(kind, title, start, rows, asked_rows, made_from, still)
 
 
 def _read_asked(blob: object, names: tuple[str, ...], frames: int, budget: Budget) -> Array:
@@ -211,6 +193,14 @@ def _marks_in(inputs: dict[str, Any], name: str) -> Marks:
         return marks_of(inputs[name])
     except (KeyError, TypeError) as error:
         raise DamagedError("an edit does not say what it marked") from error
+
+
+def _require_readings(inputs: dict[str, Any]) -> None:
+    try:
+        for which in ("before", "after"):
+            read_as_of(inputs[which])
+    except (KeyError, TypeError, EngineError) as error:
+        raise DamagedError("an edit does not say how the take is read") from error
 
 
 def _texts(text: str, budget: Budget) -> tuple[str, ...]:

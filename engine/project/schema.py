@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Callable
 
 from engine.errors import FormatError
+from engine.project.migrating import text_from_values
 
 APPLICATION_ID = 0x52544B45  # RTKE
-VERSION = 2
+VERSION = 3
 NOT_OURS = "Open a .retake file, or a take."
 DAMAGED = "Open an older copy of it, or the take itself."
 MAX_TABLES = 64
@@ -60,9 +62,26 @@ _MEDIA = """CREATE TABLE media (
   kind TEXT NOT NULL, path TEXT NOT NULL, sha256 TEXT NOT NULL, offset_s REAL NOT NULL
 ) STRICT"""
 
-SCHEMAS: dict[int, dict[str, str]] = {1: _FIRST, 2: {**_FIRST, "pins": _PINS, "media": _MEDIA, "state": _STATE}}
+_ORIGIN = """CREATE TABLE origin (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  rows INTEGER NOT NULL, frames BLOB NOT NULL, lost BLOB NOT NULL, swapped INTEGER NOT NULL
+) STRICT"""
+_TEXT = """CREATE TABLE origin_text (
+  place INTEGER PRIMARY KEY,
+  bytes INTEGER NOT NULL, text BLOB NOT NULL
+) STRICT"""
+_EDITS = """CREATE TABLE edits (
+  place INTEGER PRIMARY KEY,
+  kind TEXT NOT NULL, title TEXT NOT NULL, inputs TEXT NOT NULL,
+  start INTEGER NOT NULL, frames INTEGER NOT NULL,
+  weights BLOB NOT NULL, controls TEXT NOT NULL, asked BLOB NOT NULL, lost BLOB
+) STRICT"""
+
+_SECOND = {**_FIRST, "pins": _PINS, "media": _MEDIA, "state": _STATE}
+_THIRD = {**_SECOND, "origin": _ORIGIN, "origin_text": _TEXT, "edits": _EDITS}
+SCHEMAS: dict[int, dict[str, str]] = {1: _FIRST, 2: _SECOND, 3: _THIRD}
 # From each version to the next. A table is made anew and never altered, so that its text is that of a new file.
-MIGRATIONS: dict[int, tuple[str, ...]] = {
+MIGRATIONS: dict[int, tuple[str | Callable[[sqlite3.Connection], None], ...]] = {
     1: (
         _PINS,
         "ALTER TABLE media RENAME TO media_1",
@@ -73,6 +92,17 @@ MIGRATIONS: dict[int, tuple[str, ...]] = {
         _STATE,
         "INSERT INTO state SELECT id, position, verdict, strftime('%Y-%m-%dT%H:%M:%SZ', 'now') FROM state_1",
         "DROP TABLE state_1",
+    ),
+    2: (
+        "ALTER TABLE edits RENAME TO edits_2",
+        _EDITS,
+        "INSERT INTO edits SELECT *, NULL FROM edits_2",
+        "DROP TABLE edits_2",
+        "ALTER TABLE origin RENAME TO origin_2",
+        _ORIGIN,
+        _TEXT,
+        text_from_values,
+        "DROP TABLE origin_2",
     ),
 }
 
@@ -114,7 +144,10 @@ def migrate(database: sqlite3.Connection, version: int) -> None:
     try:
         for step in range(version, VERSION):
             for statement in MIGRATIONS[step]:
-                database.execute(statement)
+                if isinstance(statement, str):
+                    database.execute(statement)
+                else:
+                    statement(database)
         database.execute(f"PRAGMA user_version = {VERSION}")
         database.execute("COMMIT")
     except BaseException:

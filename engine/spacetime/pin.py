@@ -194,10 +194,10 @@ class PinSolver:
         return self._spread(values)[start - self._first : stop - self._first]
 
     def take(self, pins: Mapping[int, Pose]) -> Take:
-        """Return the take with new values of the same pins; every frame outside the range is bit-identical."""
-        weights = self._take.weights.copy()
-        weights[slice(*self._frames)] = self.solve(pins)
-        return self._take.with_weights(weights)
+        """Return the take with new values of the same pins; known frames outside the range are bit-identical."""
+        start, stop = self._frames
+        found = np.isin(np.arange(start, stop), list(pins))
+        return self._take.with_rows(start, self.solve(pins), found=found)
 
 
 def pin(

@@ -184,10 +184,11 @@ def retarget(
     matching : what is respected
     tell : is told the share that is done, 0..1; it may raise, to stop
 
-    What no marker tells of (gaze, tongue) is carried over by name; head rotation and lost frames are the source's.
+    What no marker tells of (gaze, tongue) is carried over by name; head rotation is the source's. Lost frames that move
+    on the target are lost no more.
     Raises `EditError` as `correspond` does.
     """
     pair = correspond(source, character, layout)
     weights = source.take.weights.copy()
     weights[:, pair.shapes] = match(pair, source.take.fps, matching or Matching(), tell)
-    return replace(source.take, weights=weights, origin=None)
+    return replace(source.take, origin=None).with_weights(weights)

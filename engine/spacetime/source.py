@@ -36,7 +36,7 @@ class Source:
     names : of the markers
     gaps : (frames, gaps) mm, how far lips and lids are apart, in the order of `GAPS`; NaN where unknown
     take : rate, name, head rotation and lost frames; its weights where they are known, zero otherwise
-    head : head motion taken out, or None where there was none in the markers
+    head : the head motion that was taken out of a capture's markers; None for a take
     """
 
     displacements: Array
@@ -48,6 +48,11 @@ class Source:
 
     def __len__(self) -> int:
         return len(self.displacements)
+
+    @property
+    def is_capture(self) -> bool:
+        """Whether it is markers that were tracked, and not a take, which may be at rest throughout."""
+        return self.head is not None
 
     def part(self, start: int, stop: int) -> Source:
         """Return frames [start, stop), for looking at settings on a short range."""

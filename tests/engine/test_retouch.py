@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from engine.errors import EditError
-from engine.retouch import paste, replace_weight, smooth
+from engine.retouch import PASTE_FEATHER_S, paste, replace_weight, smooth
 from engine.take import SHAPE_INDEX, Take
 
 JAW = SHAPE_INDEX["jawOpen"]
@@ -55,14 +55,31 @@ def test_very_short_takes_are_smoothed_or_left(frames: int) -> None:
     np.testing.assert_allclose(smooth(take, (0, frames), 5.0).weights, 0.25)
 
 
-def test_a_pasted_range_is_exact_inside_and_eased_at_its_ends(take: Take) -> None:
-    copied = take.weights[10:60]
-    patch = paste(take, 200, copied)
-    np.testing.assert_array_equal(patch.weights[4:-4], copied[4:-4])
-    assert np.abs(patch.weights[0] - take.weights[200]).max() < 0.5 * np.abs(copied[0] - take.weights[200]).max()
-    assert len(paste(take, 290, copied).weights) == 10
+@pytest.mark.parametrize("frames", [1, 2, 5, 50])
+def test_what_is_pasted_is_met_and_the_feather_lies_outside(take: Take, frames: int) -> None:
+    copied = take.weights[10 : 10 + frames]
+    edited = paste(take, 200, copied).apply(take)
+    np.testing.assert_array_equal(edited.weights[200 : 200 + frames], copied)
+    for step, before in ((199, 198), (200 + frames, 201 + frames)):  # beside it the take is led over
+        assert np.abs(edited.weights[step] - take.weights[step]).max() > 0.01
+        assert (
+            np.abs(edited.weights[step] - take.weights[step]).mean()
+            > np.abs(edited.weights[before] - take.weights[before]).mean()
+        )
+    reach = round(PASTE_FEATHER_S * take.fps)
+    np.testing.assert_array_equal(edited.weights[: 200 - reach], take.weights[: 200 - reach])
+    np.testing.assert_array_equal(edited.weights[200 + frames + reach :], take.weights[200 + frames + reach :])
+
+
+def test_pasting_a_stretch_over_itself_changes_nothing(take: Take) -> None:
+    np.testing.assert_array_equal(paste(take, 100, take.weights[100:120]).apply(take).weights, take.weights)
+
+
+def test_what_does_not_fit_is_left_out(take: Take) -> None:
+    edited = paste(take, 290, take.weights[10:60]).apply(take)
+    np.testing.assert_array_equal(edited.weights[290:], take.weights[10:20])
     with pytest.raises(EditError):
-        paste(take, 300, copied)
+        paste(take, 300, take.weights[10:60])
 
 
 def test_a_weight_is_kept_within_its_range_and_others_as_they_are(take: Take) -> None:

@@ -9,14 +9,18 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
 from app.session.commands import MarkCommand
 from app.spans.filling import VARIANTS
 from app.timeline.panel import RULER_PX
 from app.window.main_window import MainWindow
+from engine.formats import read_take, write_take
+from engine.performance import demo
 from engine.project import Pin, Span
 from engine.take import SHAPES, Take
+from tests.journeys.conftest import load, saved_as
 
 LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
 
@@ -103,8 +107,6 @@ def test_a_span_of_one_frame_or_of_everything_is_refused(qtbot: QtBot, window: M
 def test_a_guide_of_another_length_or_rate_is_refused(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, frames: int, fps: float, says: str
 ) -> None:
-    from engine.formats import write_take
-
     write_take(Take(np.zeros((frames, 52)), fps), tmp_path / "guide.csv")
     (lost,) = window.session.marks.spans
     window.session.select((lost.start, lost.stop))
@@ -138,3 +140,119 @@ def test_pins_inside_are_met_pins_outside_are_left_alone_and_others_keep_the_ste
         QTest.mouseClick(window.spans.again_button, LEFT)
     window.filling.drop()
     np.testing.assert_array_equal(session.take.weights, session.original.weights)
+
+
+def filled(qtbot: QtBot, window: MainWindow, frames: tuple[int, int], *, choose: int = 0) -> None:
+    """Fill frames by key, and keep the variant."""
+    window.session.select(frames)
+    QTest.keyClick(window, Qt.Key.Key_F)
+    qtbot.waitUntil(lambda: bool(window.filling.variants) and not window.filling.busy, timeout=60_000)
+    for _ in range(choose):
+        QTest.keyClick(window, Qt.Key.Key_Right)
+    QTest.keyClick(window, Qt.Key.Key_Return)
+
+
+def exported(window: MainWindow, path: Path, monkeypatch: pytest.MonkeyPatch) -> Take:
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
+    QTest.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
+    return read_take(path)
+
+
+def test_what_is_filled_is_exported_and_undoing_it_exports_the_lost_rows_again(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session = window.session
+    (lost,) = session.marks.spans
+    filled(qtbot, window, (lost.start, lost.stop - 4))
+    assert np.flatnonzero(session.take.lost).tolist() == list(range(lost.stop - 4, lost.stop))
+    again = exported(window, tmp_path / "a.csv", monkeypatch)
+    np.testing.assert_array_equal(again.lost, session.take.lost)
+    np.testing.assert_allclose(again.weights, session.take.weights, atol=1e-9)
+    np.testing.assert_allclose(again.rotations, session.take.rotations, atol=1e-9)
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    np.testing.assert_array_equal(session.take.lost, session.original.lost)
+    exported(window, tmp_path / "b.csv", monkeypatch)
+    assert (tmp_path / "b.csv").read_bytes() == demo.BUNDLED.read_bytes()
+
+
+def test_a_saved_project_knows_what_is_still_lost_and_how_its_fill_was_made(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Save, open anew, export; undo brings the lost frames back; made again, the fill is the same to the bit."""
+    session = window.session
+    (lost,) = session.marks.spans
+    lane = session.asked.copy()
+    lane[lost.start : lost.start + 9, 0] = 12.0 + 1 / 3
+    session.asked = lane
+    window.spans.curves.setChecked(True)
+    filled(qtbot, window, (lost.start, lost.stop), choose=2)
+    kept = session.take.weights.copy()
+    saved_as(qtbot, window, tmp_path / "a.retake", monkeypatch)
+    exported(window, tmp_path / "a.csv", monkeypatch)
+    load(qtbot, window, demo.BUNDLED)
+    load(qtbot, window, tmp_path / "a.retake")
+    assert not session.take.lost.any()
+    exported(window, tmp_path / "b.csv", monkeypatch)
+    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
+
+    QTest.keyClick(window, Qt.Key.Key_R, Qt.KeyboardModifier.ControlModifier)
+    qtbot.waitUntil(lambda: bool(window.filling.variants) and not window.filling.busy, timeout=60_000)
+    np.testing.assert_array_equal(session.take.lost, session.original.lost)
+    QTest.keyClick(window, Qt.Key.Key_Return)
+    np.testing.assert_array_equal(session.take.weights, kept)
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    exported(window, tmp_path / "c.csv", monkeypatch)
+    assert (tmp_path / "c.csv").read_bytes() == demo.BUNDLED.read_bytes()
+
+
+def test_other_spans_lend_nothing_and_those_to_be_made_are_no_context(qtbot: QtBot, window: MainWindow) -> None:
+    session = window.session
+    (lost,) = session.marks.spans
+    spans = (Span(60, 90), Span(100, 130), lost)
+    session.undo.push(MarkCommand(session, replace(session.marks, spans=spans), "mark"))
+    filled(qtbot, window, (60, 90))
+    first = session.undo.command(session.undo.index() - 1).edit.inputs
+    assert first["besides"] == first["unmade"] == [[100, 130], [lost.start, lost.stop]]
+    filled(qtbot, window, (100, 130))
+    second = session.undo.command(session.undo.index() - 1).edit.inputs
+    assert second["besides"] == [[60, 90], [lost.start, lost.stop]] and second["unmade"] == [[lost.start, lost.stop]]
+
+
+def test_filling_again_shows_other_variants_and_a_bridge_is_one(qtbot: QtBot, window: MainWindow) -> None:
+    filled(qtbot, window, (100, 130))
+    kept = window.session.take.weights[100:130].copy()
+    window.session.select((100, 130))
+    for number in (7, 13):
+        QTest.keyClick(window, Qt.Key.Key_F)
+        qtbot.waitUntil(lambda: bool(window.filling.variants) and not window.filling.busy, timeout=60_000)
+        assert window.spans.seed.text().startswith(f"Variant {number} ")
+        assert all(np.abs(variant.weights - kept).max() > 1e-3 for variant in window.filling.variants)
+    window.filling.drop()
+    window.session.select((100, 104))
+    QTest.keyClick(window, Qt.Key.Key_F)
+    qtbot.waitUntil(lambda: bool(window.filling.variants) and not window.filling.busy, timeout=60_000)
+    assert len(window.filling.variants) == 1 and not window.spans.again_button.isEnabled()
+
+
+def test_a_guide_stays_until_it_is_taken_away_or_another_take_is_opened(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spans = window.spans
+    write_take(window.session.take, tmp_path / "guide.csv")
+    window.session.select((100, 130))
+    spans.mark()
+    for answer, named in ((str(tmp_path / "guide.csv"), True), ("", True)):
+        monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, answer=answer: (answer, ""))
+        QTest.mouseClick(spans.guide_button, LEFT)
+        assert ("guide.csv" in spans.guide_button.text()) is named
+    (tmp_path / "bad.csv").write_text("nothing")
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "bad.csv"), ""))
+    QTest.mouseClick(spans.guide_button, LEFT)
+    assert "guide.csv" in spans.guide_button.text() and "bad.csv" in window.notices.text.text()
+    assert spans.unguide_button.isVisibleTo(spans)
+    QTest.mouseClick(spans.unguide_button, LEFT)
+    assert "guide.csv" not in spans.guide_button.text() and not spans.unguide_button.isVisibleTo(spans)
+    spans.guide_by(tmp_path / "guide.csv")
+    window.session.undo.setClean()
+    load(qtbot, window, tmp_path / "guide.csv")
+    assert "guide.csv" not in spans.guide_button.text()

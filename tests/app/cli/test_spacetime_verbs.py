@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 
 from app import cli
+from app.cli import labelled
 from engine.character import BUNDLED, bundled
-from engine.formats import labels, read_take
+from engine.formats import labels, read_take, write_take
 from engine.formats.capture import Markers
 from engine.formats.markers import write
+from engine.manifold.retarget import retarget_weights
 from engine.performance import demo
 from engine.spacetime.layout import standard
-from engine.take import SHAPE_INDEX
+from engine.spacetime.source import from_take
+from engine.take import SHAPE_INDEX, SHAPES, Take
 
 DEMO = str(demo.BUNDLED)
 SMILE = SHAPE_INDEX["mouthSmileLeft"]
@@ -66,6 +69,21 @@ def test_a_landmark_file_says_where_markers_sit(tmp_path: Path) -> None:
     out = tmp_path / "out.csv"
     assert cli.run(["retarget", str(_markers(tmp_path)), "--landmarks", str(landmarks), "-o", str(out)]) == 0
     assert read_take(out).curve("jawOpen").max() > 0.8
+
+
+def test_a_take_at_rest_is_a_take_and_no_capture(tmp_path: Path) -> None:
+    """Its frames are told apart by its weights, as in the window, and not by markers that it never had."""
+    still = Take(np.zeros((30, len(SHAPES))), 30.0)
+    write_take(still, tmp_path / "still.csv")
+    labels.write(labels.LabelFile({15: {"jawOpen": 0.5}}), tmp_path / "labels.json")
+    out = tmp_path / "out.csv"
+    arguments = ["--method", "manifold", "--labels", str(tmp_path / "labels.json"), "-o", str(out)]
+    assert cli.run(["retarget", str(tmp_path / "still.csv"), *arguments]) == 0
+    np.testing.assert_allclose(
+        read_take(out).weights, retarget_weights(still, {15: {"jawOpen": 0.5}}).weights, atol=1e-9
+    )
+    source = from_take(still, bundled())
+    assert not source.is_capture and labelled._features(source) is source.take.weights
 
 
 @pytest.mark.parametrize(

@@ -191,3 +191,44 @@ def test_contradictory_pins_are_refused_and_others_joined() -> None:
         merged_pins([(5, {"jawOpen": 0.1}), (5, {"jawOpen": 0.2})])
     joined = merged_pins([(5, {"jawOpen": 0.1}), (5, {"jawLeft": 0.2, "jawOpen": 0.1})])[5]
     assert np.isfinite(joined).sum() == 2 and joined[SHAPES.index("jawLeft")] == 0.2
+
+
+@pytest.mark.parametrize("fps", [30.0, 60.0])
+@pytest.mark.parametrize("style", ["bridge", "perform"])
+def test_what_lies_in_lost_frames_and_spans_to_be_made_is_no_context(fps: float, style: str) -> None:
+    """Lost frames touch the span, a marked span lies near it: whatever they hold, the fill is the same."""
+    rng = np.random.default_rng(5)
+    pace = round(fps / 30)
+    base = np.clip(0.3 + np.cumsum(rng.normal(0, 0.01, (300 * pace, len(SHAPES))), axis=0), 0, 1)
+    span, gone, marked = (100 * pace, 130 * pace), (130 * pace, 145 * pace), (80 * pace, 95 * pace)
+    lost = np.zeros(len(base), bool)
+    lost[slice(*gone)] = True
+    request = Request(span, style=style, besides=(marked,), unmade=(marked,))
+    fills = []
+    for value in (0.0, 1.0):
+        spoilt = base.copy()
+        spoilt[slice(*gone)], spoilt[slice(*marked)] = value, value
+        fills.append(refill(Take(spoilt, fps, lost), request)[0].take)
+    np.testing.assert_array_equal(*(made.weights[slice(*span)] for made in fills))
+    for made in fills:  # what is still lost goes on from the fill
+        assert made.lost.sum() == gone[1] - gone[0]
+        line = np.linspace(made.weights[gone[0] - 1], made.weights[gone[1]], gone[1] - gone[0] + 2)
+        np.testing.assert_allclose(made.weights[slice(*gone)], line[1:-1], atol=1e-12)
+
+
+def test_a_fill_joins_a_span_that_is_marked_and_not_filled_yet() -> None:
+    rng = np.random.default_rng(5)
+    take = Take(np.clip(0.3 + np.cumsum(rng.normal(0, 0.01, (300, len(SHAPES))), axis=0), 0, 1), 30.0)
+    beside = (130, 160)
+    made = refill(take, Request((100, 130), style="perform", besides=(beside,), unmade=(beside,)))[0].take
+    step = np.abs(made.weights[130] - made.weights[129]).max()
+    assert step < 0.1
+    np.testing.assert_array_equal(made.weights[130:], take.weights[130:])
+
+
+@pytest.mark.parametrize("region", ["face", "lower"])
+def test_a_filled_frame_is_lost_no_more_whatever_the_region(take: Take, region: str) -> None:
+    lost = np.zeros(len(take), bool)
+    lost[60:80] = True
+    made = fill(Take(take.weights, take.fps, lost), (60, 80), region=region, style="bridge")[0].take
+    assert not made.lost.any()

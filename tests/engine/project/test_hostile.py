@@ -13,6 +13,8 @@ from engine import project
 from engine.controls import CONTROLS
 from engine.errors import EngineError, FormatError
 from engine.formats import livelink
+from engine.formats.livelink_origin import Origin
+from engine.formats.livelink_write import encode
 from engine.performance import demo
 from engine.project import Contents, Project
 from engine.take import SHAPES, Take
@@ -109,6 +111,7 @@ def test_a_newer_version_says_so(whole: bytes, tmp_path: Path) -> None:
         ("UPDATE edits SET controls = ?", "[1]"),
         ("UPDATE edits SET controls = ?", json.dumps(["a"] * 5000)),
         ("UPDATE edits SET asked = ?", zeros(7)),
+        ("UPDATE edits SET lost = ?", zeros(700)),
         ("UPDATE spans SET stop = ?", 41),
         ("UPDATE pins SET frame = ?", 12),
         ("UPDATE pins SET weights = ?", '{"jawOpen": "x"}'),
@@ -125,17 +128,37 @@ def test_values_that_cannot_be_are_a_sentence(whole: bytes, tmp_path: Path, stat
 @pytest.mark.parametrize(
     ("statement", "value"),
     [
-        ("UPDATE origin SET header = ?", "[]"),
-        ("UPDATE origin SET header = ?", '["a,b", "c", "d"]'),
         ("UPDATE origin SET rows = ?", 10**12),
-        ("UPDATE origin SET timecode_bytes = ?", -1),
-        ("UPDATE origin SET timecodes = ?", zeros(9)),
-        ("UPDATE origin SET decimals = ?", 10**6),
-        ("UPDATE origin SET newline = ?", b"\x00"),
+        ("UPDATE origin SET rows = ?", -1),
+        ("UPDATE origin SET frames = ?", zeros(9)),
+        ("UPDATE origin SET frames = ?", zeros(8 * 275)),
+        ("UPDATE origin SET lost = ?", zlib.compress(bytes([1]) * 275)),
+        ("UPDATE origin_text SET bytes = ?", 10**12),
+        ("UPDATE origin_text SET bytes = ?", 0),
+        ("UPDATE origin_text SET text = ?", zeros(9)),
+        ("UPDATE origin_text SET place = place + ?", 1),
+        ("DELETE FROM origin_text WHERE place = ?", 0),
+        ("UPDATE origin_text SET bytes = 300, text = ?", zlib.compress(b"\xff\n" * 150)),
+        ("UPDATE origin_text SET bytes = 300, text = ?", zlib.compress(b"a\n" * 150)),
+        ("UPDATE origin_text SET bytes = 600, text = ?", zlib.compress(b"a\n" * 300)),
     ],
 )
 def test_an_origin_that_cannot_be_is_a_sentence(recorded: bytes, tmp_path: Path, statement: str, value: object) -> None:
     assert "damaged" in damaged(recorded, tmp_path / "a.retake", statement, values=(value,))
+
+
+def test_a_take_whose_stored_text_is_no_row_is_written_all_the_same(recorded: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "a.retake"
+    path.write_bytes(recorded)
+    take = reopened(path).original
+    assert isinstance(take.origin, Origin)
+    head, *lines = take.origin.content.splitlines(keepends=True)
+    text = head + b"".join(b"junk\n" if 20 <= index < 30 else line for index, line in enumerate(lines))
+    sql(path, "UPDATE origin_text SET bytes = ?, text = ?", values=(len(text), zlib.compress(text)))
+    opened = reopened(path).original
+    edited = opened.with_rows(22, opened.weights[22:25] + 0.125)
+    written = b"".join(encode(edited)).splitlines()
+    assert len(written) == len(lines) + 1 and {len(line.split(b",")) for line in written[23:26]} == {63}
 
 
 def test_a_small_file_cannot_fill_the_memory(whole: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,7 +169,7 @@ def test_a_small_file_cannot_fill_the_memory(whole: bytes, tmp_path: Path, monke
         "DELETE FROM edits",
         "INSERT INTO edits WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n WHERE i < 5999) "
         f"SELECT i, 'a', 'b', '{{}}', 0, 40, x'{rows.hex()}', "
-        f"'{json.dumps([control.name for control in CONTROLS])}', x'{asked.hex()}' FROM n",
+        f"'{json.dumps([control.name for control in CONTROLS])}', x'{asked.hex()}', NULL FROM n",
     )
     assert "more than it can hold" in damaged(whole, tmp_path / "a.retake", *statements)
 

@@ -1,0 +1,141 @@
+"""Another reading of the open take: a step like any other, to the bit, kept in the project with the edits around it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.session import Session
+from app.session.commands import EditCommand, ReadingCommand, restored
+from engine import project
+from engine.editing import Patch
+from engine.formats import livelink, read_take, write_take
+from engine.formats.livelink_sides import exchange
+from engine.formats.reading import ReadAs, Reading
+from engine.project import Contents, Project, replay
+from engine.take import SHAPES, Take
+
+
+@pytest.fixture
+def take(tmp_path: Path) -> Take:
+    rng = np.random.default_rng(1)
+    write_take(Take(rng.random((80, len(SHAPES))), 30.0), tmp_path / "given.csv")
+    return read_take(tmp_path / "given.csv")
+
+
+def edit(session: Session, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    start = int(rng.integers(0, 60))
+    rows = rng.random((12, len(SHAPES)))
+    made = session.take.with_rows(start, rows)
+    patch = Patch.between(session.take, made, (start, start + 12))
+    session.undo.push(EditCommand(session, patch, f"edit {seed}"))
+
+
+def read(session: Session, fps: float, *, swapped: bool) -> None:
+    chosen = Reading(fps, "recorded" if swapped else "named")
+    session.undo.push(ReadingCommand(session, ReadAs(chosen, fps, swapped), "read"))
+
+
+def state(session: Session) -> tuple[object, ...]:
+    return (
+        session.take.fps,
+        session.take.weights.tobytes(),
+        session.original.weights.tobytes(),
+        session.controls.tobytes(),
+        session.original_controls.tobytes(),
+        session.reading,
+        livelink.read_as(session.take).swapped,
+    )
+
+
+def test_each_step_is_undone_and_done_again_to_the_bit(take: Take) -> None:
+    session, states = Session(take), []
+    steps = [
+        lambda: edit(session, 1),
+        lambda: read(session, 60.0, swapped=False),
+        lambda: edit(session, 2),
+        lambda: read(session, 25.0, swapped=False),
+        lambda: read(session, 30.0, swapped=True),
+        lambda: edit(session, 3),
+    ]
+    states.append(state(session))
+    for step in steps:
+        step()
+        states.append(state(session))
+    assert len(set(states)) == len(states)
+    for wanted in reversed(states[:-1]):
+        session.undo.undo()
+        assert state(session) == wanted
+    for wanted in states[1:]:
+        session.undo.redo()
+        assert state(session) == wanted
+
+
+def test_edits_of_before_go_along(take: Take) -> None:
+    session = Session(take)
+    edit(session, 1)
+    before = session.take.weights
+    read(session, 60.0, swapped=False)
+    np.testing.assert_array_equal(session.take.weights, exchange(before))
+    np.testing.assert_array_equal(session.original.weights, exchange(take.weights))
+    assert session.take.fps == session.original.fps == 60.0
+
+
+@pytest.mark.parametrize("position", range(6))
+def test_a_project_remembers_how_it_was_read(take: Take, tmp_path: Path, position: int) -> None:
+    session = Session(take)
+    edit(session, 1)
+    read(session, 60.0, swapped=False)
+    edit(session, 2)
+    read(session, 30.0, swapped=True)
+    edit(session, 3)
+    session.undo.setIndex(position)
+    project.create(tmp_path / "a.retake", session.contents()).close()
+    opened = Project.open(tmp_path / "a.retake")
+    contents = opened.contents
+    opened.close()
+    came = replay(contents)
+    assert came.original is not None
+    again = Session(take)
+    measured = tuple(Session(each).controls for each in (came.original, came.take))
+    again.restore(contents, None, tuple(restored(again, contents, came)), came, measured)
+    assert state(again) == state(session)
+    exported = read_take(tmp_path / "a.retake")
+    np.testing.assert_array_equal(exported.weights, session.take.weights)
+    assert exported.fps == session.take.fps
+    for index in (0, 5, 3, 1, 4, 2):
+        session.undo.setIndex(index)
+        again.undo.setIndex(index)
+        assert state(again) == state(session)
+
+
+@pytest.mark.parametrize("fps", [None, 25.0])
+@pytest.mark.parametrize("sides", ["automatic", "recorded", "named"])
+def test_a_command_may_read_a_project_otherwise(take: Take, tmp_path: Path, fps: float | None, sides: str) -> None:
+    session = Session(take)
+    edit(session, 1)
+    read(session, 60.0, swapped=False)
+    project.create(tmp_path / "a.retake", session.contents()).close()
+    found = read_take(tmp_path / "a.retake", reading=Reading(fps, sides))
+    assert found.fps == (fps or 60.0)
+    expected = exchange(session.take.weights) if sides == "recorded" else session.take.weights
+    np.testing.assert_array_equal(found.weights, expected)
+
+
+def test_untouched_rows_are_exported_as_they_came_whatever_the_reading(take: Take, tmp_path: Path) -> None:
+    session = Session(take)
+    read(session, 60.0, swapped=False)
+    write_take(session.take, tmp_path / "out.csv")
+    assert (tmp_path / "out.csv").read_bytes() == (tmp_path / "given.csv").read_bytes()
+
+
+def test_a_take_of_no_file_has_a_rate_to_choose_and_no_sides(take: Take) -> None:
+    bare = Take(take.weights, 30.0)
+    session = Session(bare)
+    read(session, 24.0, swapped=True)
+    assert session.take.fps == 24.0
+    np.testing.assert_array_equal(session.take.weights, bare.weights)
+    assert isinstance(session.contents(), Contents) and session.contents().original is bare

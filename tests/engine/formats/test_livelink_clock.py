@@ -1,0 +1,297 @@
+"""Every style of clock at every rate, with every fault that writers of timecodes are known for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+import pytest
+
+from engine.formats.livelink_clock import Clock, clock_of, timecodes_between
+from engine.formats.livelink_timecode import read_times
+
+RATES = [24, 25, 29.97, 30, 48, 50, 59.94, 60, 120]
+EXACT = {29.97: Fraction(30000, 1001), 59.94: Fraction(60000, 1001)}
+Stamps = Callable[[int, Fraction], str]  # the frame counted from midnight, and the rate -> a timecode
+
+
+def exact(rate: float) -> Fraction:
+    return EXACT.get(rate, Fraction(rate))
+
+
+def clocked(seconds: Fraction | int) -> str:
+    whole = int(seconds) % 86400
+    return f"{whole // 3600:02d}:{whole // 60 % 60:02d}:{whole % 60:02d}"
+
+
+def sixtieths(frame: int, rate: Fraction) -> str:
+    ticks = Fraction(round(frame / rate * 60_000), 1000)
+    return f"{clocked(ticks / 60)}:{float(ticks % 60):06.3f}"
+
+
+def whole_sixtieths(frame: int, rate: Fraction) -> str:
+    return f"{clocked(frame / rate)}:{int(frame / rate * 60) % 60:02d}"
+
+
+def thousandths(frame: int, rate: Fraction) -> str:
+    seconds = Fraction(round(frame / rate * 1000), 1000)
+    return f"{clocked(seconds)}:{int(seconds % 1 * 1000):03d}"
+
+
+def pointed(frame: int, rate: Fraction) -> str:
+    return thousandths(frame, rate)[:8] + "." + thousandths(frame, rate)[9:]
+
+
+def seconds(frame: int, rate: Fraction) -> str:
+    return f"{float(frame / rate):.4f}"
+
+
+def plain_thousandths(frame: int, rate: Fraction) -> str:
+    return str(round(frame / rate * 1000))
+
+
+def frames(frame: int, rate: Fraction) -> str:
+    base = round(rate)
+    return f"{clocked(frame // base)}:{frame % base:02d}"
+
+
+def frames_and_zeros(frame: int, rate: Fraction) -> str:
+    return frames(frame, rate) + ".000"
+
+
+def numbered(frame: int, rate: Fraction) -> str:
+    return f"{frames(frame, rate)}.{(frame + 1) % 1000:03d}"
+
+
+def pointed_frames(frame: int, rate: Fraction) -> str:
+    return ".".join(frames(frame, rate).rsplit(":", 1))
+
+
+def part_frames(frame: int, rate: Fraction) -> str:
+    base = round(rate)
+    count = Fraction(round(frame / rate * base * 1000), 1000)
+    return f"{clocked(count / base)}:{float(count % base):06.3f}"
+
+
+def drop_frames(frame: int, rate: Fraction) -> str:
+    """Plain counting, one label at a time: the first two (four at 59.94) of a minute are left out but each tenth."""
+    base, each = round(rate), round(rate) // 15
+    tens, rest = divmod(frame, 600 * base - 9 * each)
+    frame += 9 * each * tens + (each * ((rest - each) // (60 * base - each)) if rest >= each else 0)
+    return f"{clocked(frame // base)};{frame % base:02d}"
+
+
+def drop_frames_unsaid(frame: int, rate: Fraction) -> str:
+    return drop_frames(frame, rate).replace(";", ":")
+
+
+REAL_TIME = [sixtieths, whole_sixtieths, thousandths, pointed, seconds, plain_thousandths, part_frames]
+LABELS = [frames, frames_and_zeros, numbered, pointed_frames]  # which run slow at 29.97 and 59.94
+CASES = [
+    # whole sixtieths of 59.94 fps are those of 60 fps with a frame missing every seventeen seconds
+    *[(style, rate) for style in REAL_TIME for rate in RATES if (style, rate) != (whole_sixtieths, 59.94)],
+    *[
+        (style, rate)
+        for style in LABELS
+        for rate in RATES
+        if rate not in EXACT and (style, rate) != (pointed_frames, 120)
+    ],
+    *[(style, rate) for style in (drop_frames, drop_frames_unsaid) for rate in EXACT],
+]
+STARTS_S = [0, 3 * 3600 + 59 * 60 + 55.5]
+
+
+def stamps(style: Stamps, rate: float, rows: list[int], start_s: float = 35_995.5) -> list[bytes]:
+    first, known = int(start_s * exact(rate)), said(style, rate)
+    for frame in (first + row for row in rows):
+        if frame not in known:
+            known[frame] = style(frame, exact(rate)).encode()
+    return [known[first + row] for row in rows]
+
+
+@cache
+def said(style: Stamps, rate: float) -> dict[int, bytes]:
+    """Return the timecodes by frame that were made so far: they are asked for again and again."""
+    return {}
+
+
+def off_by(clock: Clock, rate: float, rows: list[int]) -> float:
+    """Return by how many frames the row that is furthest off stands elsewhere than it was recorded."""
+    found = clock.rows / clock.fps * rate
+    return float(np.abs(found - found[0] - (np.array(rows) - rows[0])).max())
+
+
+def named(value: object) -> str:
+    return getattr(value, "__name__", str(value))
+
+
+@pytest.mark.parametrize("start_s", STARTS_S)
+@pytest.mark.parametrize(("style", "rate"), CASES, ids=named)
+def test_every_frame_is_where_it_was_recorded(style: Stamps, rate: float, start_s: float) -> None:
+    if start_s == 0 and (style, rate) in ((part_frames, 29.97), (whole_sixtieths, 29.97)):
+        pytest.skip("from midnight on these are a writer's numbered frames, and sixtieths of 30 fps")
+    rows = list(range(round(65 * rate) if "drop" in named(style) else length(style, rate)))
+    clock = clock_of(stamps(style, rate, rows, start_s))
+    assert clock.fps == pytest.approx(float(exact(rate)), rel=1e-6)
+    assert off_by(clock, float(exact(rate)), rows) < 0.5
+    assert (clock.missed, clock.odd) == (0, 0)
+
+
+def length(style: Stamps, rate: float) -> int:
+    """Return how many rows show what a style does: dropped labels that nothing speaks of are seen at a minute's end."""
+    return round((65 if style is drop_frames_unsaid else 9) * rate)
+
+
+FAULTS: dict[str, Callable[[list[int]], list[int]]] = {
+    "single rows absent": lambda rows: [row for row in rows if row % 37 != 5],
+    "half a second absent": lambda rows: [row for row in rows if not len(rows) // 3 <= row < len(rows) // 3 + 20],
+    "a long pause": lambda rows: [*rows[: len(rows) // 2], *(row + 3000 for row in rows[len(rows) // 2 :])],
+    "second row absent": lambda rows: [row for row in rows if row != 1],
+    "last but one absent": lambda rows: [row for row in rows if row != len(rows) - 2],
+}
+# What is absent or odd in stamps that are coarser than the frames shows late, by a frame or two.
+FINE = [case for case in CASES if case[0] is not whole_sixtieths or case[1] in (24, 25, 30, 60)]
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize(("style", "rate"), FINE, ids=named)
+def test_absent_rows_are_gaps(style: Stamps, rate: float, fault: str) -> None:
+    if style is drop_frames_unsaid and fault == "a long pause":
+        pytest.skip("without a minute's end nothing tells that labels are dropped")
+    rows = FAULTS[fault](list(range(length(style, rate))))
+    clock = clock_of(stamps(style, rate, rows))
+    assert clock.fps == pytest.approx(float(exact(rate)), rel=1e-6)
+    assert off_by(clock, float(exact(rate)), rows) < 0.5
+    assert clock.odd == 0
+
+
+ODD: dict[str, Callable[[list[bytes]], list[bytes]]] = {
+    "one duplicate": lambda codes: [*codes[:100], codes[99], *codes[101:]],
+    "three duplicates": lambda codes: [
+        codes[row - 1] if row in (40, 41, 150) else code for row, code in enumerate(codes)
+    ],
+    "one of the start": lambda codes: [*codes[:100], codes[0], *codes[101:]],
+    "one of the end": lambda codes: [*codes[:100], codes[-1], *codes[101:]],
+    "one in words": lambda codes: [*codes[:100], b"--:--", *codes[101:]],
+    "one empty": lambda codes: [*codes[:100], b"", *codes[101:]],
+    "the first": lambda codes: [codes[150], *codes[1:]],
+    "two swapped": lambda codes: [*codes[:100], codes[101], codes[100], *codes[102:]],
+}
+
+
+@pytest.mark.parametrize("fault", ODD)
+@pytest.mark.parametrize(("style", "rate"), FINE, ids=named)
+def test_an_odd_stamp_is_no_reason_to_doubt_the_others(style: Stamps, rate: float, fault: str) -> None:
+    rows = list(range(length(style, rate)))
+    clock = clock_of(ODD[fault](stamps(style, rate, rows)))
+    assert clock.fps == pytest.approx(float(exact(rate)), rel=1e-6)
+    assert off_by(clock, float(exact(rate)), rows) < 0.5
+    assert clock.missed == 0
+    if style is not whole_sixtieths:
+        assert any("out of order" in notice for notice in clock.notices)
+
+
+@pytest.mark.parametrize("back_s", [0.02, 0.1, 5.0])
+@pytest.mark.parametrize(("style", "rate"), [case for case in FINE if case[0] is not drop_frames_unsaid], ids=named)
+def test_a_clock_that_was_set_back_goes_on(style: Stamps, rate: float, back_s: float) -> None:
+    rows = list(range(length(style, rate)))
+    back = max(2, round(back_s * rate))
+    codes = stamps(style, rate, [row if row < 200 else row - back for row in rows])
+    clock = clock_of(codes)
+    assert clock.fps == pytest.approx(float(exact(rate)), rel=1e-6)
+    assert (off_by(clock, float(exact(rate)), rows), clock.missed) == (pytest.approx(0, abs=0.5), 0)
+    assert any("set back once" in notice for notice in clock.notices)
+
+
+@pytest.mark.parametrize("speed", [0.9985, 0.9995, 1.0004, 1.0015])
+@pytest.mark.parametrize("rate", [24, 25, 30, 48, 50, 60, 120])
+def test_a_clock_of_slightly_wrong_speed_is_that_of_a_usual_rate(rate: int, speed: float) -> None:
+    codes = [sixtieths(row, Fraction(rate) / Fraction(speed)).encode() for row in range(20 * rate)]
+    clock = clock_of(codes)
+    near = {rate, rate / 1.001} if rate in (24, 30, 60, 120) else {rate}
+    assert any(clock.fps == pytest.approx(each, rel=1e-9) for each in near)
+    assert (clock.missed, clock.odd) == (0, 0)
+
+
+@pytest.mark.parametrize(("style", "rate"), FINE, ids=named)
+def test_midnight_is_a_moment_like_any_other(style: Stamps, rate: float) -> None:
+    if style in (seconds, plain_thousandths):
+        pytest.skip("plain numbers go on past midnight")
+    if style is numbered and rate == 24:
+        pytest.skip("a number that is not begun anew at midnight and a label that is")
+    first = round(86_400 * exact(rate)) - round(5 * rate)
+    before = round(5 * rate)
+    if style in (drop_frames, drop_frames_unsaid):
+        per_day = 144 * (600 * round(rate) - 9 * (round(rate) // 15))
+        first = per_day - before
+        codes = [style((first + row) % per_day, exact(rate)) for row in range(2 * before)]
+    else:
+        codes = [style(first + row, exact(rate)) for row in range(2 * before)]
+    clock = clock_of([code.encode() for code in codes])
+    if style is not drop_frames_unsaid:  # whose labels show in ten seconds without a minute's end
+        assert clock.fps == pytest.approx(float(exact(rate)), rel=1e-6)
+    assert (clock.missed, clock.odd) == (0, 0)
+    assert clock.start_s == pytest.approx(86_400 - before / rate, abs=0.2)
+
+
+@pytest.mark.parametrize("rate", EXACT)
+def test_labels_that_are_never_dropped_need_the_rate(rate: float) -> None:
+    rows = list(range(600))
+    codes = stamps(frames, rate, rows)
+    assert clock_of(codes).fps == round(rate)
+    clock = clock_of(codes, float(exact(rate)))
+    assert off_by(clock, float(exact(rate)), rows) < 1e-6 and "as asked" in clock.notices[0]
+
+
+@pytest.mark.parametrize(
+    ("codes", "fps", "says"),
+    [
+        ([f"00:00:{row:02d}:00" for row in range(20)], 30.0, "make no sense"),
+        (["nonsense"] * 5, 30.0, "make no sense"),
+        (["00:00:00:00.000"] * 50, 30.0, "make no sense"),
+        ([str(row) for row in range(20)], 30.0, "numbered"),
+        ([""] * 20, 30.0, "make no sense"),
+        (["inf"] * 20, 30.0, "make no sense"),
+        (["1e300"] * 20, 30.0, "make no sense"),
+    ],
+)
+def test_what_is_no_clock_is_said_and_asked_for(codes: list[str], fps: float, says: str) -> None:
+    clock = clock_of([code.encode() for code in codes])
+    assert clock.fps == fps and says in clock.notices[0] and "--fps" in clock.notices[0]
+    assert clock.rows.tolist() == list(range(len(codes)))
+
+
+def test_times_in_any_order_are_taken_row_by_row() -> None:
+    rng = np.random.default_rng(0)
+    codes = [sixtieths(int(frame), Fraction(30)).encode() for frame in rng.permutation(300)]
+    clock = clock_of(codes)
+    assert clock.rows.tolist() == list(range(300)) and clock.notices
+
+
+def test_a_pause_of_hours_is_left_out_and_said() -> None:
+    rows = [*range(300), *(row + 10 * 3600 * 60 for row in range(300, 600))]
+    clock = clock_of(stamps(sixtieths, 60, rows, 0))
+    assert clock.rows[-1] == 599 and "leap" in " ".join(clock.notices)
+
+
+@pytest.mark.parametrize(("style", "rate"), FINE, ids=named)
+def test_timecodes_for_absent_rows_are_what_the_file_would_have_said(style: Stamps, rate: float) -> None:
+    whole = list(range(length(style, rate)))
+    absent = [row for row in whole if 70 <= row < 90 or row == 33]
+    rows = [row for row in whole if row not in absent]
+    start_s = 35_995.5 if style is not numbered else 0.0
+    codes = stamps(style, rate, rows, start_s)
+    clock = clock_of(codes)
+    made = timecodes_between(codes, clock.rows, absent, fps=clock.fps)
+    assert [len(code) for code in made] == [len(code) for code in stamps(style, rate, absent, start_s)]
+    whole_codes: list[bytes] = [b""] * len(whole)
+    for row, code in zip([*rows, *absent], [*codes, *made], strict=True):
+        whole_codes[row] = code
+    again = clock_of(whole_codes)
+    assert (again.fps, again.missed) == (pytest.approx(clock.fps), 0)
+    right = read_times(stamps(style, rate, whole, start_s))
+    put = read_times(whole_codes)
+    assert right is not None and put is not None
+    assert np.abs(right[1] - put[1]).max() < (1 / 60 if style is whole_sixtieths else 2e-3) + 1e-9
