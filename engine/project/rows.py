@@ -199,7 +199,7 @@ def _require_readings(inputs: dict[str, Any]) -> None:
     try:
         for which in ("before", "after"):
             read_as_of(inputs[which])
-    except (KeyError, TypeError, EngineError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError, EngineError) as error:
         raise DamagedError("an edit does not say how the take is read") from error
 
 

@@ -219,6 +219,24 @@ def archive(content: bytes, rng: Random) -> bytes:
     return made.getvalue()
 
 
+def bundle(content: bytes, rng: Random) -> bytes:
+    """Change a zip of texts: one of them, its name, or the bytes of the whole."""
+    if rng.random() < 0.4:
+        return binary(content, rng)
+    with zipfile.ZipFile(io.BytesIO(content)) as file:
+        members = {name: file.read(name) for name in file.namelist()}
+    name = rng.choice(list(members))
+    if rng.random() < 0.8:
+        members[name] = (document if name.endswith(".json") else text)(members[name], rng)
+    else:
+        members[rng.choice(TEXTS).replace("\0", "_")[:99] + name[-4:]] = members.pop(name)
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, data in members.items():
+            file.writestr(name, data)
+    return made.getvalue()
+
+
 def scene(content: bytes, rng: Random) -> bytes:
     """Change a GLB: the JSON of its scene, its binary, or the bytes of the whole."""
     if rng.random() < 0.15:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import itertools
 import json
+import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -329,8 +330,25 @@ def _read_packet(path: Path) -> None:
     _live[0].receive(path.read_bytes())
 
 
+def _take_zips(folder: Path) -> Iterator[tuple[str, bytes]]:
+    rows = dict(_take_csv(folder))["a.csv"]
+    card = {"version": 1, "slate": "a", "take": 1, "frames": 12, "videoTargetFrameRate": 60, "calibrated": True}
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, content in (("a/a_cal.csv", rows), ("a/a_raw.csv", rows), ("a/take.json", json.dumps(card).encode())):
+            file.writestr(name, content)
+    yield "a.zip", made.getvalue()
+
+
+def _read_zip(path: Path) -> None:
+    from engine.formats import read_take
+
+    read_take(path)
+
+
 READERS: dict[str, Reader] = {
     "live link csv": Reader(_take_csv, _read_take, mutate.text),
+    "take zips": Reader(_take_zips, _read_zip, mutate.bundle),
     "marker csv and trc": Reader(_markers("csv", "trc"), _read_markers, mutate.text),
     "c3d": Reader(_c3d, _read_markers, mutate.binary),
     "textgrid": Reader(_grids, _read_cues, mutate.text),
