@@ -256,3 +256,12 @@ def test_a_date_that_no_calendar_has_is_a_sentence(whole: bytes, tmp_path: Path,
     sql(path, "UPDATE state SET changed = ?", values=(date,))
     with pytest.raises(FormatError, match="last change"):
         project.peek(path)
+
+
+def test_what_is_written_is_within_what_is_read_however_well_it_packs(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr("engine.project.blobs.ORDINARY_BYTES", 2**20)
+    monkeypatch.setattr("engine.project.blobs.LARGE_BYTES", 2**16)
+    still = Contents(Take(weights=np.zeros((20_000, len(SHAPES))), fps=60.0, name="still"))
+    content = stored(still, tmp_path)
+    (tmp_path / "b.retake").write_bytes(content)
+    assert len(reopened(tmp_path / "b.retake").original) == 20_000
