@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Picture = npt.NDArray[np.uint8]  # (height, width, 3)
 
 MAX_PIXELS = 8192 * 4608
+LARGE_PIXELS = 4096 * 2304
 SHOWN_PX = 480  # the longer side of what is kept: the panel is small
 CACHE_BYTES = 96 * 2**20
 NEAR_S = 1.0  # going on decoding is quicker than seeking up to here
@@ -88,6 +89,8 @@ class Video:
             raise FormatError(f"{self.path.name} is in a format that cannot be decoded here.", EXPECTED)
         _require_small(stream.codec_context.width, stream.codec_context.height, self.path)
         stream.thread_type = "AUTO"
+        if stream.codec_context.width * stream.codec_context.height > LARGE_PIXELS:
+            stream.codec_context.thread_count = 1  # each thread holds pictures of its own, 57 MB each at 8K
         return stream
 
     def _kept(self, time_s: float) -> Frame | None:
