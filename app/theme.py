@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
+
+from engine import assets
 
 GRID = 8  # px
-ICONS = (Path(__file__).parent.parent / "assets" / "icons").as_posix()
+ICONS = assets.ICONS.as_posix()
 FONT_PX = 12
 # Okabe and Ito's order, fit for every kind of colour vision; the last two are lightened for dark ground.
 LANES = ("#56B4E9", "#E69F00", "#2BB88F", "#F0E442", "#CC79A7", "#E8743B", "#8FB4FF", "#B9BEC8")

@@ -12,12 +12,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from engine import assets
 from engine.errors import AssetError, EditError, EngineError
 from engine.formats.archive import arrays_of
 from engine.formats.atomic import write_bytes
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
-BUNDLED = Path(__file__).parent.parent / "assets" / "head" / "head.npz"
+BUNDLED = assets.HEAD
 SPLIT = ("split", "split_triangles")
 REQUIRED = ("vertices", "faces", "shape_names", "deltas", "colours", "landmark_names", "landmark_vertices")
 FARTHEST_MM = 1e6

@@ -114,7 +114,7 @@ class FileActions(QObject):
     def take_in(self, path: Path) -> None:
         """Open or attach a file, by its ending."""
         ending = path.suffix.lower()
-        if livelink_folder.is_one(path) and livelink_folder.table_of(path) != self._session.path:
+        if self._is_another_take(path):
             self.load(path)
         elif ending in media.ENDINGS:
             self._media.attach("audio", path)
@@ -126,6 +126,13 @@ class FileActions(QObject):
             self.capture_dropped.emit(path)
         else:
             self.load(path)
+
+    def _is_another_take(self, path: Path) -> bool:
+        """Whether a file belongs to a take of several files that is not open."""
+        try:
+            return livelink_folder.is_one(path) and livelink_folder.table_of(path) != self._session.path
+        except EngineError:
+            return True  # opening it says what is wrong
 
     def open_take(self) -> None:
         """Choose a file to open."""
@@ -172,11 +179,17 @@ class FileActions(QObject):
     def open_recording(self, take: Take) -> None:
         """Open what was recorded live, unless edits would be lost."""
 
+        self.open_then(take, lambda: None)
+
+    def open_then(self, take: Take, then: Callable[[], None]) -> None:
+        """Open a take that no file holds, unless edits would be lost, and go on."""
+
         def show() -> None:
             self.imported = None
             self._session.open(take, None)
             self._keeper.keep()
             self.opened.emit()
+            then()
 
         self.when_safe(show)
 

@@ -95,6 +95,13 @@ ACTIONS: tuple[Action, ...] = (
     Action("unplace_marker", "Remove the chosen marker", "Retarget", twin="retake retarget --landmarks"),
     Action("save_places", "Save landmark file…", "Retarget", twin="retake retarget --landmarks"),
     Action("read_places", "Read landmark file…", "Retarget", twin="retake retarget --landmarks"),
+    Action("review_tool", "Review", "Review", ("Q",), "Review", True, twin="retake review"),
+    Action("next_change", "Next change", "Review", ("Alt+Down",), twin="retake review --json"),
+    Action("previous_change", "Previous change", "Review", ("Alt+Up",), twin="retake review --json"),
+    Action("compare_take", "Compare with another take…", "Review", twin="retake review BEFORE AFTER"),
+    Action("approve", "Approve", "Review", ("Ctrl+Shift+A",), twin="a verdict belongs to a project"),
+    Action("send_back", "Needs work", "Review", ("Ctrl+Shift+W",), twin="a verdict belongs to a project"),
+    Action("write_report", "Write a report…", "Review", ("Ctrl+Shift+E",), twin="retake review -o REPORT.html"),
     Action("expand_lane", "Show or hide the weights below", "View", ("W",)),
     Action("play", "Play or pause", "Playback", ("Space",), "▶", True, twin="retake render -o OUT.mp4"),
     Action("play_backwards", "Play backwards", "Playback", ("J",)),
@@ -140,6 +147,9 @@ LINES = frozenset(
         "carry",
         "suggest_labels",
         "place_rest",
+        "compare_take",
+        "approve",
+        "write_report",
         "sound_later",
         "next_frame",
         "next_span",
@@ -154,10 +164,10 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("open_take", "save", "export"),
     ("undo", "redo"),
     ("drag_tool", "draw_tool", "scale_tool", "pin_tool", "mark_tool"),
-    ("fill", "clean_tool", "live_tool", "retarget_tool"),
+    ("fill", "clean_tool", "live_tool", "retarget_tool", "review_tool"),
     ("play", "loop"),
 )
-MENUS: tuple[str, ...] = ("File", "Edit", "Tools", "Retarget", "Playback", "View", "Help")
+MENUS: tuple[str, ...] = ("File", "Edit", "Tools", "Retarget", "Review", "Playback", "View", "Help")
 
 
 def keys_of(entry: Action, preset: str) -> tuple[str, ...]:

@@ -8,12 +8,12 @@ from typing import Annotated
 
 import typer
 
-from app.cli import blind, character, clean, fill, flags, smooth, spacetime, tables, takes, training
+from app.cli import blind, character, clean, fill, flags, review, smooth, spacetime, tables, takes, training
 from app.cli.checks import check_all
 from app.settings import log_path, start_log
 from engine.errors import EngineError
 
-FAMILIES = (takes, flags, fill, smooth, spacetime, clean, character, tables, blind, training)
+FAMILIES = (takes, flags, review, fill, smooth, spacetime, clean, character, tables, blind, training)
 
 
 def build() -> typer.Typer:

@@ -28,6 +28,7 @@ OUTPUTS: dict[tuple[str, str], tuple[str, ...]] = {
     ("make", "out"): FOLDER,
     ("make", "key"): ANY,
     ("train", "out"): FOLDER,
+    ("review", "out"): FOLDER,  # or a report, which the command itself checks first
 }
 
 

@@ -17,7 +17,7 @@ from engine.formats.importing import Imported, in_words
 from engine.formats.reading import AUTOMATIC, SIDES, SIDES_IN_WORDS, ReadAs, Reading
 
 RATES = ("23.976", "24", "25", "29.97", "30", "48", "50", "59.94", "60", "120")
-RATE_PX, SIDES_PX = 110, 230
+RATE_PX, SIDES_PX = 132, 230
 HIDE = "Hide this line; File, How this take was read shows it again"
 
 

@@ -13,7 +13,7 @@ from app.preview.camera import Camera
 from app.preview.renderer import Picture, Renderer, Shot
 from engine.character import Character, bundled
 from engine.formats.atomic import write_bytes
-from engine.take import Take
+from engine.take import Array, Take
 
 ASPECT = 0.8  # width / height of one head
 
@@ -71,3 +71,16 @@ def write_movie(takes: Sequence[Take], path: Path, *, height: int, frames: tuple
             container.mux(stream.encode(av.VideoFrame.from_ndarray(np.ascontiguousarray(drawn), format="rgb24")))
         container.mux(stream.encode())
     write_bytes(path, [stored.getvalue()])
+
+
+def comparison(before: Array, after: Array, *, height: int) -> bytes:
+    """Return a PNG of two faces, weights (52,) each, and where the second one moved, in mm: before, after, difference."""
+    from PIL import Image
+
+    width = 2 * round(height * ASPECT / 2)
+    renderer = _renderer()
+    pair = renderer.draw(Shot((before, after), Camera(), (2 * width, height)))
+    moved = renderer.draw(Shot((after,), Camera(), (width, height), compared_to=before))
+    stored = io.BytesIO()
+    Image.fromarray(np.concatenate([pair, moved], axis=1)).save(stored, "PNG", optimize=True)
+    return stored.getvalue()

@@ -22,12 +22,14 @@ from app.settings import NAME
 from engine import project
 from engine.errors import EngineError
 from engine.formats import read_take
+from engine.formats.reading import Reading
 from engine.project import Contents, Project
 from engine.take import timecode
 
 log = logging.getLogger(__name__)
 STALE_S = 86_400.0  # a file that was being made this long ago never will be
 RECORDINGS = "*.partial*.csv"
+AS_SPOOLED = Reading(sides="recorded")  # it is written as the app does, whatever its motion looks like
 ABANDONED_S = 5.0  # a recording is touched every second
 PATIENCE_S = 0.3  # a wait that nobody notices when a take is closed
 
@@ -377,7 +379,7 @@ class Keeper(QObject):
         for path in self.folder.glob(RECORDINGS):
             try:
                 if time.time() - path.stat().st_mtime > ABANDONED_S:
-                    project.create(self._new_path(), Contents(read_take(path))).close()
+                    project.create(self._new_path(), Contents(read_take(path, reading=AS_SPOOLED))).close()
                     path.unlink()
             except (EngineError, OSError) as error:
                 log.info("%s is not offered: %s", path.name, error)

@@ -50,6 +50,7 @@ class Change(Flag):
     VISEMES = auto()  # what is said when
     FLAGS = auto()  # what was found automatically
     CHARACTER = auto()  # whose head the weights are for
+    REVIEW = auto()  # where the take differs from the recording
     READING = auto()  # the frame rate, or the sides of mouth and jaw, that the take is read with
 
 
@@ -81,6 +82,7 @@ class Session(QObject):
     marks : spans, pins, notes, media and verdict
     visemes : what is said when, or None
     flags : what was found automatically, by the first frame; None while it is looked for
+    differences : half-open ranges of frames that differ from the recording; None while nobody looks
     touched : the half-open range of frames that changed last
     character : whose head the weights are for; None for the bundled one
     """
@@ -110,6 +112,7 @@ class Session(QObject):
         self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
         self.visemes: VisemeLane | None = None
         self.flags: tuple[quality.Flag, ...] | None = None
+        self.differences: tuple[tuple[int, int], ...] | None = None
         self.touched = (0, len(take))
         self.draft: Patch | None = None
         self.selection: tuple[int, int] | None = None
@@ -204,6 +207,12 @@ class Session(QObject):
         """Show what was found automatically."""
         self.flags = flags
         self.changed.emit(Change.FLAGS)
+
+    def set_differences(self, ranges: tuple[tuple[int, int], ...] | None) -> None:
+        """Show where the take differs from the recording, or no longer."""
+        if ranges != self.differences:
+            self.differences = ranges
+            self.changed.emit(Change.REVIEW)
 
     def play_on(self, character: Character | None) -> None:
         """Say whose head the weights are for; None is the bundled one."""

@@ -38,6 +38,21 @@ def draw_marks(
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
 
 
+def draw_ranges(
+    painter: QPainter, ranges: Sequence[tuple[int, int]], place: tuple[QRectF, tuple[float, float]], colours: Palette
+) -> None:
+    """Draw half-open ranges of frames as blocks, none thinner than can be seen."""
+    box, view = place
+    per_frame = box.width() / max(1e-9, view[1] - view[0])
+    block = box.adjusted(0, 4, 0, -4)
+    for start, stop in ranges:
+        left, right = (box.left() + (frame - 0.5 - view[0]) * per_frame for frame in (start, stop))
+        if right >= box.left() and left <= box.right():
+            painter.fillRect(
+                QRectF(left, block.top(), max(2.0, right - left), block.height()), QColor(colours.lanes[5])
+            )
+
+
 def _draw_pins(
     painter: QPainter, pins: Sequence[Pin], box: QRectF, scale: tuple[float, float], colours: Palette
 ) -> None:

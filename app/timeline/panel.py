@@ -17,7 +17,7 @@ from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
 from app.session import Change, Session
 from app.theme import GRID, Palette
 from app.timeline.flags import FLAGS_PX, FlagLane
-from app.timeline.marks import LANE_PX, draw_marks, lanes
+from app.timeline.marks import LANE_PX, draw_marks, draw_ranges, lanes
 from app.timeline.spans import SpanLane
 from app.timeline.viseme_editing import VisemeEditing
 from app.timeline.visemes import VISEMES_PX, Place
@@ -28,7 +28,9 @@ RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 66
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 SLACK_PX = 3  # a press that moves no farther is a click
 STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
-LAYOUT = Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES  # what may bring lanes or take them away
+LAYOUT = (
+    Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES | Change.REVIEW
+)  # what may bring lanes or take them away
 SHOWN = LAYOUT | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
 STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 HINTS = {
@@ -36,6 +38,7 @@ HINTS = {
     "audio": "Drag to move the sound against the face.",
     "spans": "Drag to mark a span, click one to choose it.",
     "visemes": "Drag the ends of a block, double-click to select it, right-click to change it.",
+    "changes": "Where the take differs from the recording: Alt+Up and Alt+Down go from one to the next.",
     "flags": "What to look at: click a mark to go there, or Up and Down from one to the next.",
 }
 
@@ -99,6 +102,8 @@ class Timeline(QWidget):
         if session.visemes is not None:
             heights["visemes"] = VISEMES_PX
         heights |= {"spans": SPANS_PX, "flags": FLAGS_PX}
+        if session.differences is not None:
+            heights["changes"] = LANE_PX
         heights |= dict.fromkeys(lanes(session.marks), LANE_PX)
         boxes, top = {}, float(RULER_PX)
         for name, height in heights.items():
@@ -148,6 +153,7 @@ class Timeline(QWidget):
         marks, view = self._session.marks, self._session.view
         self._spans.draw(painter, marks.spans, boxes["spans"], view, self._colours)
         self._flags.draw(painter, self._session.flags, boxes["flags"], view, self._colours)
+        draw_ranges(painter, self._session.differences or (), (self.lane_box("changes"), view), self._colours)
         for name in lanes(marks):
             draw_marks(painter, marks, name, (boxes[name], view), self._colours)
         x = self.x_of(self._session.playhead)

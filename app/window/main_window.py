@@ -43,6 +43,7 @@ from app.playback.transport import Transport
 from app.preview.panel import PreviewPanel
 from app.preview.reference import ReferencePanel
 from app.retarget.actions import RetargetActions
+from app.review.actions import ReviewActions
 from app.session import MEDIA, Change, Session
 from app.session.flagging import Flagging
 from app.session.inference import Inference
@@ -109,6 +110,7 @@ class MainWindow(QMainWindow):
         self.attached = MediaSection(self.session)
         self.notes = NotesSection(self.session)
         self.retarget = RetargetActions(self.session, self)
+        self.review = ReviewActions(self.session, self)
         sections = (
             self.brush,
             self.value,
@@ -118,6 +120,7 @@ class MainWindow(QMainWindow):
             *self.retarget.sections,
             self.smoothing,
             self.spans,
+            self.review.section,
             self.facts,
             self.attached,
             self.notes,
@@ -141,7 +144,17 @@ class MainWindow(QMainWindow):
     # --- building
 
     def _do(self, name: str) -> None:
-        owners = (self, self.files, self.sound, self.edits, self.time, self.visemes, self.retarget, self.preferences)
+        owners = (
+            self,
+            self.files,
+            self.sound,
+            self.edits,
+            self.time,
+            self.visemes,
+            self.retarget,
+            self.review,
+            self.preferences,
+        )
         owner = next(each for each in owners if name in type(each).__dict__)
         getattr(owner, name)()
 
@@ -192,7 +205,7 @@ class MainWindow(QMainWindow):
     def _connect(self) -> None:
         self.session.changed.connect(self._on_change)
         self.inference.ready.connect(lambda: self.status["engine"].setText(""))
-        shown = (self.preview, self.media, self.reference, self.live, self.retarget)
+        shown = (self.preview, self.media, self.reference, self.live, self.retarget, self.review)
         for part in (*shown, self.inference, self.filling, self.keeper, self.visemes, self.timeline.visemes):
             part.failed.connect(self.notices.tell)
         self.preview.timed.connect(self.status.timed)
@@ -224,6 +237,8 @@ class MainWindow(QMainWindow):
         self.files.character_chosen.connect(self.retarget.retargeting.show_on)
         self.retarget.retargeting.head_read.connect(self.preview.show_character)
         self.retarget.retargeting.told.connect(self.status["notice"].setText)
+        self.review.told.connect(self.status["notice"].setText)
+        self.review.open_take = self.files.open_then
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
         self.timeline.visemes.wanted.connect(self._do)
@@ -333,6 +348,7 @@ class MainWindow(QMainWindow):
         self.visemes.close()
         self.live.shut_down()
         self.retarget.retargeting.close()
+        self.review.close()
         self.preview.close_renderer()
         self.preferences.close()
 

@@ -25,10 +25,12 @@ FALLBACK_FPS = 30.0
 SLOWEST_FPS, FASTEST_FPS = 1.0, 1000.0
 MAX_FRAMES = 1_000_000  # over four hours at 60 fps
 LONGEST_PAUSE_S = 1800.0  # a longer one is no part of a performance: what follows it follows at once
+FEW_FRAMES = 8  # that are missing by whole steps of the clock
 AHEAD = 9  # rows that are asked whether a jump of the clock is one
-GAIN = 0.1  # share of a row's deviation by which the expected time of the next one is moved
+GAIN = 0.2  # share of a row's deviation by which the next is expected elsewhere [0.1..0.3]; fewer odd rows in uneven clocks
 MOST_ODD = 0.25  # share of stamps out of order beyond which none is believed
 BLOCKS = (25, 13)  # rows over which a rate must explain coarse stamps; fewer where rows are missing in most of them
+MANY_ALIKE = 0.1  # share of rows with the stamp of the row before, beyond which the clock is coarser than it is written
 EXPLAINED = 0.6  # share of such blocks that it must explain
 ADVICE = "Set the rate in the import line, or with --fps, if it is another."
 
@@ -98,7 +100,7 @@ def _believed(timecodes: Sequence[bytes]) -> Clock:
     if style.base == 0:
         return _numbered(times, style)
     times, unread = _unbroken(times, style.day_s)
-    quantum_s = max(style.quantum_s, float(np.spacing(np.abs(times).max())))
+    quantum_s = _resolution(times, style)
     step_s = _usual_step(times, quantum_s)
     if not SHORTEST_STEP_S <= step_s <= LONGEST_STEP_S:
         return _row_by_row(len(times), "The timecodes make no sense")
@@ -113,7 +115,7 @@ def _believed(timecodes: Sequence[bytes]) -> Clock:
     missed = int(walked.rows[-1]) + 1 - len(times)
     reason = f"from {style.described}"
     odd = len(set(walked.odd) | set(np.flatnonzero(unread).tolist()))
-    notices = [*_said_rate(style, rate, measured), *_said_odd(odd, walked), *_said_missed(walked.rows, rate)]
+    notices = [*_said_rate(style, rate, measured, quantum_s), *_said_odd(odd, walked), *_said_missed(walked.rows, rate)]
     first = next(row for row in range(len(times)) if row not in walked.odd)
     start_s = float(times[first] - walked.rows[first] / rate) % style.day_s
     return Clock(rate, walked.rows, start_s, reason, style, missed, odd, tuple(notices))
@@ -141,6 +143,15 @@ def _unbroken(times: Array, day_s: float) -> tuple[Array, Mask]:
         places = np.arange(len(times))
         times = np.interp(places, places[~unread], times[~unread])
     return np.unwrap(times, period=day_s), unread
+
+
+def _resolution(times: Array, style: Style) -> float:
+    """Return the smallest difference in seconds of two stamps: as they are written, or coarser where many are the same."""
+    written = max(style.quantum_s, float(np.spacing(np.abs(times).max())))
+    steps = np.diff(times)
+    again = np.abs(steps) < 0.5 * written
+    forward = steps[steps > 0.5 * written]
+    return max(written, float(np.quantile(forward, 0.1))) if again.mean() > MANY_ALIKE and len(forward) else written
 
 
 def _usual_step(times: Array, quantum_s: float) -> float:
@@ -195,6 +206,11 @@ class _Walked:
     set_back: list[int]
     pauses: list[float]
 
+    @property
+    def uneven(self) -> bool:
+        """Whether the clock goes back and forth by itself, and was not set."""
+        return len(self.set_back) > max(3, 0.005 * len(self.rows)) and not self.pauses
+
 
 def _walk(times: Array, step_s: float, quantum_s: float) -> _Walked:
     """Follow a clock from row to row, and say which frame each is.
@@ -226,11 +242,16 @@ def _walk(times: Array, step_s: float, quantum_s: float) -> _Walked:
             continue
         if off < 0:
             set_back.append(row)
-        elif off * step_s > LONGEST_PAUSE_S or total + off > MAX_FRAMES or _ends_oddly(row, off * step_s, len(values)):
+            expected += agreed
+            continue
+        if off * step_s > LONGEST_PAUSE_S or total + off > MAX_FRAMES or _ends_oddly(row, off * step_s, len(values)):
             pauses.append(off * step_s)
         else:
             increments[row] = 1 + round(off)
             total += round(off)
+            if off < FEW_FRAMES:  # as many steps as are missing; a pause may end between two of them
+                expected += round(off)
+                continue
         expected = value
     increments[0] = 0
     return _Walked(np.cumsum(increments), odd, set_back, pauses)
@@ -250,13 +271,18 @@ def _ends_oddly(row: int, jump_s: float, rows: int) -> bool:
 
 def _rate(times: Array, walked: _Walked, *, quantum_s: float, step_s: float) -> tuple[float, float]:
     """Return frames per second, and what the plain steps of the clock measure; a standard rate where one is near."""
-    plain = np.diff(walked.rows) == 1
-    for row in (*walked.odd, *walked.set_back):
-        plain[max(0, row - 1) : row + 1] = False
-    if walked.pauses:
-        plain &= np.diff(times) < 2 * step_s
-    length = float(np.diff(times)[plain].sum())
-    measured = float(plain.sum()) / length if plain.any() and length > 0 else 1 / step_s
+    believed = np.delete(np.arange(len(times)), walked.odd)
+    frames, steps = np.diff(walked.rows[believed]), np.diff(times[believed])
+    broken = np.searchsorted(believed, walked.set_back)
+    plain = (
+        (frames == np.diff(believed))
+        & (steps < 2 * step_s * frames + 1.5 * quantum_s)
+        & ~np.isin(np.arange(1, len(believed)), broken)
+    )
+    length = float(steps[plain].sum())
+    measured = float(frames[plain].sum()) / length if plain.any() and length > 0 else 1 / step_s
+    if walked.uneven and times[-1] > times[0]:  # its ends tell more than what lies between them
+        measured = float(walked.rows[-1]) / float(times[-1] - times[0])
     if not 0.8 < measured * step_s < 1.25:
         measured = 1 / step_s
     near = max(NEAR, min(0.02, quantum_s / length if length > 0 else 0.02))
@@ -264,12 +290,12 @@ def _rate(times: Array, walked: _Walked, *, quantum_s: float, step_s: float) -> 
     return (nearest if abs(nearest / measured - 1) < near else measured), measured
 
 
-def _said_rate(style: Style, rate: float, measured: float) -> list[str]:
+def _said_rate(style: Style, rate: float, measured: float, quantum_s: float) -> list[str]:
     """Say what the timecodes count where that is not what the app writes, and whether their clock is off."""
     said = []
     if style != Style(decimals=style.decimals, digits=style.digits):
         said.append(f"Taken as {rate:.6g} fps, from {style.described}.")
-    if abs(measured / rate - 1) > 5e-4 and style.quantum_s < 0.2 / rate:
+    if abs(measured / rate - 1) > 5e-4 and quantum_s < 0.2 / rate:
         said.append(f"The clock of the file says {measured:.5g} fps; taken as {rate:.6g}, the nearest usual rate.")
     return said
 
@@ -279,6 +305,8 @@ def _said_odd(odd: int, walked: _Walked) -> list[str]:
     if odd:
         what = "1 timecode is" if odd == 1 else f"{odd} timecodes are"
         said.append(f"{what} out of order; those rows stand where their neighbours say.")
+    if walked.uneven:
+        return ["The clock runs unevenly; the rows are taken at even steps."]
     if walked.set_back:
         times = "once" if len(walked.set_back) == 1 else f"{len(walked.set_back)} times"
         said.append(f"The clock was set back {times}; the rows go on without a gap.")

@@ -24,6 +24,7 @@ from engine.formats.reading import AUTOMATIC, FASTEST_FPS, SLOWEST_FPS, Reading
 from engine.take import Take
 
 CARD = "take.json"
+CARD_SAYS = {"slate", "subject", "videoTargetFrameRate", "startTimecode", "deviceModel", "calibrated"}
 CALIBRATED, RAW, NEUTRAL = "_cal", "_raw", "_neutral"
 KINDS = (CALIBRATED, RAW, NEUTRAL)
 ADVICE = "Open the CSV file that you want."
@@ -58,8 +59,10 @@ class Parts:
 
 def is_one(path: Path) -> bool:
     """Whether a path leads to a take of several files: its folder, its zip, or one of them."""
-    if path.suffix.lower() == ".zip" or path.name.lower() == CARD or _kind(path.name):
+    if path.suffix.lower() == ".zip" or _kind(path.name):
         return True
+    if path.name.lower() == CARD:
+        return bool(_said(path) & CARD_SAYS)
     return _is_folder(path) or (path.suffix.lower() in film.ENDINGS and has_table_beside(path))
 
 
@@ -232,6 +235,15 @@ def _card(path: Path) -> float | None:
         return _rate_in(content_of(path, at_most=MAX_CARD_BYTES))
     except FormatError:
         return None  # the timecodes tell the rate
+
+
+def _said(path: Path) -> set[str]:
+    """Return what a card says something of; mouth cues may have its name too, and say none of it."""
+    try:
+        card = json.loads(content_of(path, at_most=MAX_CARD_BYTES))
+    except (FormatError, ValueError, RecursionError):
+        return set()
+    return set(card) if isinstance(card, dict) else set()
 
 
 def _rate_in(content: bytes | None) -> float | None:

@@ -165,11 +165,11 @@ def read_times(timecodes: Sequence[bytes]) -> tuple[Style, Array] | None:
 
 def _split(timecodes: Sequence[bytes]) -> tuple[Array, bool] | None:
     """Return the numbers of each timecode, (rows, fields), NaN for a text that has not as many, and whether by `;`."""
-    counts = Counter(code.count(b":") + code.count(b";") for code in timecodes)
+    counts = Counter(code.replace(b";", b":").count(b":") for code in timecodes)
     colons, many = counts.most_common(1)[0]
     if colons >= MOST_FIELDS or 2 * many <= len(timecodes):
         return None
-    semicolons = 2 * sum(b";" in code for code in timecodes) > len(timecodes)
+    semicolons = b";" in timecodes[0] + timecodes[-1] and 2 * sum(b";" in code for code in timecodes) > len(timecodes)
     blocks = [timecodes[first : first + BLOCK_ROWS] for first in range(0, len(timecodes), BLOCK_ROWS)]
     fields = np.concatenate([_numbers(block, colons + 1) for block in blocks])
     good = np.isfinite(fields).all(axis=1)
@@ -261,7 +261,8 @@ def _base(fields: Array) -> int | None:
     odd, many = counted.most_common(1)[0]
     sure = many >= 3 and many > max(0.6 * len(held), votes[best]) and FEWEST <= odd <= MOST and counts.max() <= odd
     if sure and abs(odd - APP_BASE) > 2 * usual:
-        return odd
+        uneven = float((inner > 1.5 * np.median(inner)).mean()) > 0.1  # cut off to counts that a rate does not divide
+        return odd + 1 if uneven and odd + 1 in BASES else odd
     return best if votes[best] else None
 
 
@@ -276,7 +277,7 @@ def _numbered(style: Style, fields: Array) -> Style:
     """Return the style with whether its decimals repeat the frame's number, the row's, or the second's thousandths."""
     wrap, counts = 10**style.decimals, np.floor(fields[:, 3])
     part = np.round((fields[:, 3] - counts) * wrap)
-    if len(fields) < 5 or len(np.unique(part)) < 3:
+    if len(fields) < 5 or len(np.unique(part[:SAMPLE])) < 3:
         return style
     frame = _whole_seconds(fields) * style.base + counts
     # A genuine 59.94 fps from midnight on looks the same until the decimals wrap.

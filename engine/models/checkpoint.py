@@ -13,10 +13,11 @@ import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 
+from engine import assets
 from engine.errors import AssetError
 from engine.formats.atomic import write_bytes
 
-MODELS = Path(__file__).parent.parent.parent / "assets" / "models"
+MODELS = assets.MODELS
 VERSION = 1
 MAX_SIZE = 4096  # units, layers or frames; the largest in use is 512
 # What torch and a network's constructor raise for sizes and names that do not fit.

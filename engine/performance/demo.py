@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from engine import assets
 from engine.formats import write_take
 from engine.performance.performer import Script, perform
 from engine.take import Take
 
-BUNDLED = Path(__file__).parent.parent.parent / "assets" / "takes" / "demo.csv"
+BUNDLED = assets.DEMO_TAKE
 PHONES = (
     "SIL SIL M EY1 B IY W IY SH UH D M UW1 V SIL SIL AY HH AE V B IH N HH AE1 P IY B IH F AO1 R SIL SIL SIL "
     "W AA1 CH M IY S M AY1 L SIL SIL SIL SIL SIL DH AH M UW1 V IY Z AA R P R IH T IY1 G UH D SIL SIL"

@@ -22,6 +22,7 @@ TOOLS: dict[str, type[Tool]] = {
     "clean": ScrubTool,
     "live": ScrubTool,
     "retarget": ScrubTool,
+    "review": ScrubTool,
 }
 
 

@@ -12,6 +12,7 @@ from app.actions.table import ACTIONS, MENUS, TOOLBAR, keys_of
 from app.actions.time import TimeActions
 from app.actions.viseme import VisemeActions
 from app.retarget.actions import RetargetActions
+from app.review.actions import ReviewActions
 from app.settings import PRESETS
 from app.window.main_window import MainWindow
 
@@ -23,6 +24,7 @@ OWNERS = (
     TimeActions,
     VisemeActions,
     RetargetActions,
+    ReviewActions,
     SettingsActions,
 )
 

@@ -16,7 +16,21 @@ from engine.formats.livelink_sides import exchange
 from engine.formats.reading import Reading
 from engine.take import SHAPE_INDEX, SHAPES, Take
 
-READING = ("info", "edit", "render", "flags", "fill", "smooth", "pin", "retarget", "clean", "replay", "drive")
+READING = (
+    "info",
+    "edit",
+    "render",
+    "flags",
+    "review",
+    "check",
+    "fill",
+    "smooth",
+    "pin",
+    "retarget",
+    "clean",
+    "replay",
+    "drive",
+)
 WRITING = ("edit", "fill", "smooth", "pin", "retarget", "clean")
 
 

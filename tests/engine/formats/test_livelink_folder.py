@@ -74,6 +74,20 @@ def test_the_raw_file_opens_where_it_is_chosen_or_alone(tmp_path: Path) -> None:
     assert opened(take) == RAW and any("raw" in notice for notice in take.notices)
 
 
+def test_a_zip_without_a_film_has_none(tmp_path: Path) -> None:
+    folder = handed_over(tmp_path / "take")
+    (folder / "MySlate_1_iPhone.mov").unlink()
+    path = zipped(folder, tmp_path / "take.zip")
+    assert opened(read_take(path)) == CALIBRATED
+    assert livelink_folder.copy_film(path, tmp_path / "films") is None and not (tmp_path / "films").exists()
+
+
+def test_mouth_cues_of_the_card_s_name_are_no_card(tmp_path: Path) -> None:
+    folder = handed_over(tmp_path / "take")
+    (folder / "take.json").write_text(json.dumps({"metadata": {}, "mouthCues": []}))
+    assert not livelink_folder.is_one(folder / "take.json") and livelink_folder.is_one(folder)
+
+
 def test_a_face_at_rest_alone_is_no_take(tmp_path: Path) -> None:
     folder = handed_over(tmp_path / "take", kinds="neutral")
     with pytest.raises(FormatError, match="at rest"):

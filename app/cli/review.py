@@ -1,0 +1,191 @@
+"""`retake review` and `retake check`: what was changed, and whether a take may go on."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+
+from app.cli.reading import AUTOMATIC, Fps, ReadSides, sides_of
+from engine.errors import EditError, EngineError
+from engine.quality import KINDS
+
+if TYPE_CHECKING:
+    from engine.formats.reading import Reading
+    from engine.quality import Flag
+    from engine.review.changes import Change, Comparison
+    from engine.review.report import Draw, Review
+
+PICTURE_HEIGHT = 240  # px
+PICTURES = 60  # at most, of the changes that move the face furthest
+INDEX = "index.html"
+FOUND = 1  # exit code of a take that has what it must not have
+errors = Console(stderr=True)
+
+
+def review(
+    before: Annotated[Path | None, typer.Argument(help="The take before its edits; or a project alone.")] = None,
+    after: Annotated[Path | None, typer.Argument(help="The take after its edits.")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="The report to write, an HTML file.")] = None,
+    queue: Annotated[Path | None, typer.Option(help="A folder of pairs; a report of each goes to --out.")] = None,
+    offset: Annotated[float | None, typer.Option(help="Seconds by which the second take begins later.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the changes and flags as one JSON object.")] = False,
+    pictures: Annotated[bool, typer.Option("--pictures/--no-pictures", help="Draw the face at each change.")] = True,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
+) -> None:
+    """Show what was changed between two takes, or in a project, and by how much."""
+    from engine.formats.reading import Reading
+    from engine.review import pairs
+
+    reading = Reading(fps, sides_of(sides))
+    if queue is not None:
+        _review_queue(queue, out, reading, pictures=pictures)
+        return
+    if before is None:
+        raise EditError("There is nothing to review.", "Name two takes, or a project.")
+    if out is None and not as_json:
+        raise EditError("Say where the report goes.", "Add -o REPORT.html, or --json to print it.")
+    if out is not None and out.suffix.lower() not in (".html", ".htm"):
+        raise EditError(f"{out.name} is not a name for a report.", "Use a name that ends in .html.")
+    first, second = (None, before) if after is None else (before, after)
+    found = pairs.review(first, second, offset_s=offset, reading=reading)
+    if out is not None:
+        _write(found, out, pictures=pictures)
+    if as_json:
+        print(json.dumps(_as_json(found)))
+    else:
+        typer.echo(f"{_summary(found)}; wrote {out}")
+
+
+def check(
+    takes: Annotated[list[Path], typer.Argument(help="Takes or projects.", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    fail_on: Annotated[str, typer.Option(help=f"Flags that must not be there: {', '.join(KINDS)}.")] = ",".join(KINDS),
+    least: Annotated[float, typer.Option(help="Only flags of at least this weight, 0..1.", min=0, max=1)] = 0.0,
+    fps: Fps = None,
+    sides: ReadSides = AUTOMATIC,
+) -> None:
+    """Check takes for a pipeline: exit code 0 where all are fine, 1 where flags were found, 2 where one cannot be read."""
+    from engine.formats.reading import Reading
+    from engine.review import pairs
+
+    reading = Reading(fps, sides_of(sides))
+    kinds = [kind.strip() for kind in fail_on.split(",") if kind.strip()]
+    unknown = [kind for kind in kinds if kind not in KINDS]
+    if unknown:
+        raise EditError(f"There is no flag called {unknown[0]!r}.", f"Flags are: {', '.join(KINDS)}.")
+    rows, unread = [], 0
+    for path in takes:
+        try:
+            flags = [flag for flag in pairs.flags(path, reading) if flag.kind in kinds and flag.weight >= least]
+            rows.append({"take": str(path), "ok": not flags, "flags": [asdict(flag) for flag in flags]})
+        except EngineError as error:
+            unread += 1
+            rows.append({"take": str(path), "ok": False, "error": str(error), "flags": []})
+    if as_json:
+        print(json.dumps({"ok": all(row["ok"] for row in rows), "takes": rows}))
+    else:
+        for row in rows:
+            typer.echo(f"{row['take']}: {row.get('error') or _counted(row['flags'])}")
+    if not all(row["ok"] for row in rows):
+        raise SystemExit(2 if unread else FOUND)
+
+
+def _counted(flags: object) -> str:
+    assert isinstance(flags, list)
+    counts = {kind: sum(flag["kind"] == kind for flag in flags) for kind in KINDS}
+    return ", ".join(f"{count} x {KINDS[kind]}" for kind, count in counts.items() if count) or "fine"
+
+
+def _review_queue(folder: Path, out: Path | None, reading: Reading, *, pictures: bool) -> None:
+    """Write a report of each pair, and a page that lists them; a pair that cannot be read does not stop the others."""
+    from engine.formats.atomic import write_bytes
+    from engine.review import pairs
+    from engine.review.report import Entry, index
+
+    if not folder.is_dir():
+        raise EditError(f"{folder} is not a folder.", "Name a folder of pairs with --queue.")
+    if out is None:
+        raise EditError("Say which folder the reports go to.", "Add -o FOLDER.")
+    found = pairs.pairs(folder)
+    out.mkdir(parents=True, exist_ok=True)
+    entries = []
+    for number, (before, after) in enumerate(found, 1):
+        errors.print(f"{number} of {len(found)}: {after.name}", style="dim", highlight=False, markup=False)
+        target = out / f"{after.stem}.html"
+        try:
+            seen = pairs.review(before, after, reading=reading)
+            _write(seen, target, pictures=pictures)
+            entries.append(Entry(after.name, target.name, _summary(seen)))
+        except EngineError as error:
+            entries.append(Entry(after.name, "", str(error)))
+    write_bytes(out / INDEX, [index(entries).encode()])
+    typer.echo(f"{len(found)} pairs, {sum(not entry.link for entry in entries)} of them unread; wrote {out / INDEX}")
+
+
+def _write(found: Review, out: Path, *, pictures: bool) -> None:
+    from engine.formats.atomic import write_bytes
+    from engine.review.report import html
+
+    draw, full_mm = _drawing(found.comparison) if pictures else (None, 0.0)
+    write_bytes(out, [html(found, draw=draw, full_mm=full_mm).encode()])
+
+
+def _drawing(compared: Comparison) -> tuple[Draw, float]:
+    """Return what draws a change (before, after and their difference at its peak), and the mm it draws brightest."""
+    from app.preview import movie
+    from app.preview.renderer import HEAT_FULL_MM
+
+    shown = sorted(compared.changes, key=lambda change: -change.moved_mm)[:PICTURES]
+
+    def draw(change: Change) -> bytes:
+        if change not in shown:
+            return b""
+        return movie.comparison(
+            compared.weights[change.peak], compared.after.weights[change.peak], height=PICTURE_HEIGHT
+        )
+
+    return draw, HEAT_FULL_MM
+
+
+def _summary(found: Review) -> str:
+    compared = found.comparison
+    return (
+        f"{len(compared.changes)} changes in {int(compared.differs.sum())} of {int(compared.common.sum())} frames, "
+        f"{len(found.new_flags)} new flags, {len(found.gone_flags)} gone ({compared.alignment.sentence})"
+    )
+
+
+def _as_json(found: Review) -> dict[str, object]:
+    compared = found.comparison
+
+    def listed(flags: tuple[Flag, ...]) -> list[dict[str, object]]:
+        return [asdict(flag) for flag in flags]
+
+    return {
+        "before": compared.before.name,
+        "after": compared.after.name,
+        "alignment": asdict(compared.alignment),
+        "frames": {
+            "common": int(compared.common.sum()),
+            "differ": int(compared.differs.sum()),
+            "identical": compared.identical,
+        },
+        "changes": [asdict(change) for change in compared.changes],
+        "flags": listed(found.flags_after),
+        "new_flags": listed(found.new_flags),
+        "gone_flags": listed(found.gone_flags),
+        "verdict": found.verdict,
+        "notes": [asdict(remark) for remark in found.remarks],
+    }
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(review)
+    app.command()(check)

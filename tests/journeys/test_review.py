@@ -1,0 +1,123 @@
+"""Who checks other people's work: go through what was changed by keyboard alone, judge, compare two takes, write a report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog
+from pytestqt.qtbot import QtBot
+
+from app.window.main_window import MainWindow
+from engine import project
+from engine.formats import read_take, write_take
+from engine.performance import demo
+from engine.take import SHAPE_INDEX
+from tests.journeys.conftest import load, saved_as, settled
+
+JAW = SHAPE_INDEX["jawOpen"]
+
+
+def edited(path: Path, *ranges: tuple[int, int]) -> Path:
+    take = read_take(demo.BUNDLED)
+    weights = take.weights.copy()
+    for start, stop in ranges:
+        weights[start:stop, JAW] += 0.3
+    write_take(take.with_weights(weights), path)
+    return path
+
+
+def compared(qtbot: QtBot, window: MainWindow, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+    with qtbot.waitSignal(window.review.comparing.paired, timeout=20_000):
+        window.actions_by_name["compare_take"].trigger()
+    qtbot.waitUntil(lambda: bool(window.review.section.changes), timeout=20_000)
+
+
+def test_changes_are_gone_through_judged_and_saved_by_keyboard_alone(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session = window.session
+    compared(qtbot, window, edited(tmp_path / "b.csv", (60, 80), (150, 160)), monkeypatch)
+    assert session.tool == "review" and session.undo.count() == 1
+    assert [(change.start, change.stop) for change in window.review.section.changes] == [(60, 80), (150, 160)]
+    assert session.differences == ((60, 80), (150, 160))
+
+    session.move_playhead(0)
+    QTest.keyClick(window, Qt.Key.Key_Down, Qt.KeyboardModifier.AltModifier)
+    assert 60 <= session.playhead < 80 and session.selection == (60, 80)
+    QTest.keyClick(window, Qt.Key.Key_Down, Qt.KeyboardModifier.AltModifier)
+    assert 150 <= session.playhead < 160
+    QTest.keyClick(window, Qt.Key.Key_Up, Qt.KeyboardModifier.AltModifier)
+    assert 60 <= session.playhead < 80
+
+    window.review.section.sentence.setText("the jaw pops")
+    QTest.keyClick(window, Qt.Key.Key_W, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    assert session.marks.verdict == "Needs work: the jaw pops"
+    saved_as(qtbot, window, tmp_path / "judged.retake", monkeypatch)
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert session.marks.verdict == ""
+    QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    np.testing.assert_array_equal(session.take.weights, session.original.weights)
+    settled(qtbot, window)
+    qtbot.waitUntil(lambda: not window.review.section.changes, timeout=20_000)
+
+
+def test_a_verdict_is_there_when_the_project_is_opened_again(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    QTest.keyClick(window, Qt.Key.Key_Q)
+    window.review.section.sentence.setText("lovely")
+    QTest.keyClick(window, Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    saved_as(qtbot, window, tmp_path / "good.retake", monkeypatch)
+    load(qtbot, window, demo.BUNDLED)
+    assert window.session.marks.verdict == ""
+    load(qtbot, window, tmp_path / "good.retake")
+    assert window.review.section.verdict.currentText() == "Approved"
+    assert window.review.section.sentence.text() == "lovely"
+
+
+def test_a_take_of_another_length_is_put_on_one_clock(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take = read_take(demo.BUNDLED)
+    weights = take.weights[30:230].copy()
+    weights[100:110, JAW] += 0.3
+    write_take(type(take)(weights, take.fps, name="part.csv"), tmp_path / "part.csv")
+    compared(qtbot, window, tmp_path / "part.csv", monkeypatch)
+    assert len(window.session.take) == 200
+    assert [(change.start, change.stop) for change in window.review.section.changes] == [(100, 110)]
+
+
+def test_a_report_is_written_beside_the_work(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compared(qtbot, window, edited(tmp_path / "b.csv", (60, 80)), monkeypatch)
+    out = tmp_path / "report.html"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(out), ""))
+    with qtbot.waitSignal(window.review.reporting.written, timeout=120_000):
+        window.actions_by_name["write_report"].trigger()
+    text = out.read_text(encoding="utf-8")
+    assert "frames 60 to 79" in text and "as in b.csv" in text and "data:image/png" in text
+
+
+def test_what_cannot_be_compared_is_told_and_nothing_is_lost(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "broken.csv").write_text("x")
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "broken.csv"), ""))
+    with qtbot.waitSignal(window.review.failed, timeout=20_000):
+        window.actions_by_name["compare_take"].trigger()
+    assert window.session.undo.count() == 0
+
+
+def test_a_project_of_edits_is_told_apart_from_its_recording(tmp_path: Path) -> None:
+    take = read_take(demo.BUNDLED)
+    contents = project.Contents(take, (), 0, project.Marks())
+    project.create(tmp_path / "p.retake", contents).close()
+    from engine.review.pairs import review
+
+    assert not review(None, tmp_path / "p.retake").comparison.changes
