@@ -104,11 +104,13 @@ def run(
     memory_disk = Path("/dev/shm")
     folder = Path(tempfile.mkdtemp(prefix="hostile", dir=memory_disk if memory_disk.is_dir() else None))
     tempfile.tempdir = str(folder)
-    ends = time.monotonic() + seconds
+    ends = None  # counted from the second file on: the first one loads the libraries
     try:
         tries = contents(reader, folder, rng) if file is None else iter([(file.name, file.read_bytes())])
         for ending, content in tries:
-            if outcome.mutations >= count or time.monotonic() > ends:
+            if outcome.mutations == 1:
+                ends = time.monotonic() + seconds
+            if outcome.mutations >= count or (ends is not None and time.monotonic() > ends):
                 break
             path = folder / f"tried{Path(ending).suffix}"
             path.unlink(missing_ok=True)
