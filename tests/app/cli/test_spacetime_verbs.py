@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -157,7 +158,8 @@ def test_suggestions_go_on_from_a_label_file(tmp_path: Path, capsys: pytest.Capt
 
 
 def test_markers_and_labels_move_a_head_of_the_label_file(tmp_path: Path) -> None:
-    labels.write(labels.LabelFile({15: {"jawOpen": 0.5}}, BUNDLED), tmp_path / "labels.json")
+    shutil.copy(BUNDLED, tmp_path / "head.npz")
+    labels.write(labels.LabelFile({15: {"jawOpen": 0.5}}, Path("head.npz")), tmp_path / "labels.json")
     out = tmp_path / "out.csv"
     arguments = ["--method", "manifold", "--labels", str(tmp_path / "labels.json"), "-o", str(out)]
     assert cli.run(["retarget", str(_markers(tmp_path)), *arguments]) == 0
