@@ -67,4 +67,6 @@ def require_writable(path: Path, endings: tuple[str, ...]) -> None:
     if path.is_dir():
         raise EngineError(f"{path.name} is a folder.", "Name a file in it.")
     if not path.parent.is_dir():
-        raise EngineError(f"{path.name} could not be written: there is no folder {path.parent}.", "Make the folder first.")
+        raise EngineError(
+            f"{path.name} could not be written: there is no folder {path.parent}.", "Make the folder first."
+        )
