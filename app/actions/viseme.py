@@ -11,6 +11,7 @@ from app.background import LatestWins
 from app.session import Session
 from app.session.commands import VisemesCommand
 from app.timeline.viseme_editing import VisemeEditing
+from engine.errors import EditError
 from engine.formats.cues import READERS, read_cues
 from engine.speech.lane import VisemeLane, attached, restored
 from engine.take import Take
@@ -82,14 +83,22 @@ class VisemeActions(QObject):
             self.failed.emit("There are no visemes.", "Attach a TextGrid or mouth cues: File, Attach visemes.")
         return self._session.visemes
 
-    def _arrived(self, request: tuple[Path, Take], lane: VisemeLane) -> None:
+    def _arrived(self, request: tuple[Path, Take], read: tuple[VisemeLane, list[str]]) -> None:
         path, recorded = request
+        lane, notices = read
         if recorded is self._session.recorded:
             self._push(lane, f"attach {path.name}")
+            if notices:
+                self.failed.emit(" ".join(notices), "")
 
     def _push(self, lane: VisemeLane | None, title: str) -> None:
         self._session.undo.push(VisemesCommand(self._session, lane, title))
 
 
-def _read(request: tuple[Path, Take]) -> VisemeLane:
-    return attached(read_cues(request[0]), request[0].name)
+def _read(request: tuple[Path, Take]) -> tuple[VisemeLane, list[str]]:
+    """Return the lane of a file, and what the user should hear about it."""
+    path, notices = request[0], list[str]()
+    cues = read_cues(path, notices.append)
+    if not cues and notices:
+        raise EditError(notices[-1], "Choose a file with a tier of phones.")
+    return attached(cues, path.name), notices

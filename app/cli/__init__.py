@@ -8,6 +8,7 @@ from typing import Annotated, cast
 import typer
 
 from app.cli import blind, character, clean, fill, flags, review, smooth, spacetime, tables, takes, training
+from app.cli.checks import check_all
 from app.cli.outputs import protect_inputs
 from app.printing import remark, say
 from app.settings import log_path, start_log
@@ -29,6 +30,7 @@ def build() -> typer.Typer:
     app.callback()(_start)
     for family in FAMILIES:
         family.register(app)
+    check_all(app)
     return protect_inputs(app)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
@@ -73,7 +74,7 @@ def fill(
         pins=merged_pins([_pin(text) for text in pin or []]),
         guide=read_take(guide) if guide else None,
         guide_offset=guide_offset,
-        visemes=begun_at(read_cues(visemes), visemes_offset) if visemes else (),
+        visemes=begun_at(read_cues(visemes, warn), visemes_offset) if visemes else (),
         controls=_controls(control or [], spans),
         style=cast(Style, style),  # checked with the rest
         lost=lost,
@@ -83,6 +84,11 @@ def fill(
         path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
         save_take(one, path, write_sides)
         say(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
+
+
+def warn(sentence: str) -> None:
+    """Say what the user should hear beside the result."""
+    typer.echo(sentence, err=True)
 
 
 def _said(spans: list[tuple[int, int]]) -> str:
@@ -120,9 +126,12 @@ def _weight(text: str) -> tuple[str, float]:
 
 def _number(text: str) -> float:
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
         raise EditError(f"{text[:40]!r} is not a number.") from None
+    if not math.isfinite(number):
+        raise EditError(f"{text[:40]!r} is not a finite number.")
+    return number
 
 
 def _controls(texts: list[str], spans: list[tuple[int, int]]) -> dict[str, Array | float]:
@@ -144,9 +153,11 @@ def _curve(text: str, spans: list[tuple[int, int]]) -> Array | float:
     if os.path.exists(text):
         try:
             numbers: Array = np.array([float(word) for word in read_text(Path(text)).split()])
-            return numbers
         except ValueError:
             raise FormatError(f"{Path(text).name} is not a list of numbers.") from None
+        if np.isinf(numbers).any() or np.isnan(numbers).all():  # nan asks for nothing at its frame
+            raise FormatError(f"{Path(text).name} holds numbers that are not finite, or none.")
+        return numbers
     if ":" not in text:
         return _number(text)
     if len(spans) > 1:

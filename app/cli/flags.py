@@ -61,7 +61,10 @@ def _lane(path: Path | None, offset_s: float) -> VisemeLane | None:
     from engine.formats.cues import read_cues
     from engine.speech.lane import attached, shifted
 
-    return shifted(attached(read_cues(path), path.name), offset_s) if path is not None else None
+    if path is None:
+        return None
+    cues = read_cues(path, lambda sentence: typer.echo(sentence, err=True))
+    return shifted(attached(cues, path.name), offset_s) if cues else None
 
 
 def _seen(path: Path, reading: Reading, original: Take | None, lane: VisemeLane | None) -> Seen:

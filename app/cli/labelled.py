@@ -43,6 +43,11 @@ def retarget(performance: Carried, character: Path | None, labels: Path | None) 
         raise EditError("There are no labelled frames.", "Name a file of them with --labels; --suggest says which.")
     asked = _read(labels)
     path = character or asked.target
+    if path is None and asked.elsewhere:
+        name = asked.elsewhere.replace("\\", "/").rpartition("/")[2][:60]
+        raise EditError(
+            f"{labels.name} is for the head {name!r}, which does not lie beside it.", "Name the head with --character."
+        )
     target = bundled() if path is None else character_of(path)
     source = performance.source
     guess = carry(source, target, layout=performance.layout(target)) if source.is_capture else source.take

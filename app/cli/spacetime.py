@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -161,9 +162,13 @@ def assignments(text: str) -> dict[str, float]:
     for part in filter(None, (piece.strip() for piece in text.split(","))):
         name, _, value = part.partition("=")
         try:
-            values[name.strip()] = float(value)
+            number = float(value)
         except ValueError:
-            raise EditError(f"{part!r} is not a name and a number.", "Write them as jawOpen=.2.") from None
+            number = math.nan
+        if math.isfinite(number):
+            values[name.strip()] = number
+        else:
+            raise EditError(f"{part!r} is not a name and a number.", "Write them as jawOpen=.2.")
     return values
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 from PySide6.QtWidgets import QGraphicsItem, QStyleOptionGraphicsItem, QWidget
@@ -65,11 +66,10 @@ class Underlay(Overlay):
         hatch, tint = QColor(colours.warning), QColor(colours.warning)
         hatch.setAlphaF(0.22)
         tint.setAlphaF(0.05)
-        for span in self.spans:
-            box = self._box(span, area)
-            if box.right() >= area.left() and box.left() <= area.right():
-                painter.fillRect(box, tint)
-                painter.fillRect(box, QBrush(hatch, Qt.BrushStyle.BDiagPattern))
+        for left, right in self._stretches(area):
+            box = QRectF(left, area.top(), right - left, area.height())
+            painter.fillRect(box, tint)
+            painter.fillRect(box, QBrush(hatch, Qt.BrushStyle.BDiagPattern))
         chosen = QColor(colours.text)
         chosen.setAlphaF(0.07)
         if self.selection is not None:
@@ -78,6 +78,24 @@ class Underlay(Overlay):
             reach = QColor(colours.accent)
             reach.setAlphaF(0.09)
             painter.fillRect(self._box(self.brush_reach, self.brush_box()), reach)
+
+    def _stretches(self, area: QRectF) -> Marks:
+        """Return where spans lie on screen, left and right; those that share a pixel are one, or a take that lost its
+        face at every other frame would be drawn in thousands of boxes for each picture."""
+        if not self.spans:
+            return []
+        begin = self._x_of(-0.5)
+        edges = begin + np.array(self.spans, float) * (self._x_of(0.5) - begin)
+        edges[:, 1] = np.maximum(edges[:, 1], edges[:, 0] + 1.0)
+        edges = edges[(edges[:, 1] >= area.left()) & (edges[:, 0] <= area.right())]
+        edges = edges[np.argsort(edges[:, 0], kind="stable")].clip(area.left() - 1, area.right() + 1)
+        if not len(edges):
+            return []
+        reach = np.maximum.accumulate(edges[:, 1])
+        apart = np.flatnonzero(np.floor(edges[1:, 0]) > np.floor(reach[:-1])) + 1
+        first, last = np.concatenate([[0], apart]), np.concatenate([apart - 1, [len(edges) - 1]])
+        stretches: Marks = np.stack([edges[first, 0], reach[last]], axis=1).tolist()
+        return stretches
 
     def _box(self, frames: tuple[float, float], area: QRectF) -> QRectF:
         left, right = self._x_of(frames[0] - 0.5), self._x_of(frames[1] - 0.5)

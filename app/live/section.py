@@ -216,10 +216,13 @@ class LiveSection(Section):
             return
         self._save()
         status = self._listener.status()
-        if self.subjects.count() != len(status.subjects):
+        if [self.subjects.itemText(index) for index in range(self.subjects.count())] != list(status.subjects):
             self.subjects.clear()
             for name in status.subjects:
                 self.subjects.addItem(plain(name, longest=NAME_LENGTH), name)
+        followed = self.subjects.findData(self._listener.stream.subject or "")
+        if followed >= 0 and not self.subjects.view().isVisible():
+            self.subjects.setCurrentIndex(followed)
         lines = [counted(status.frames, "frame")]
         if np.isfinite(status.latency_p95_ms):
             lines.append(f"clean {status.latency_p95_ms:.1f} ms after arrival")

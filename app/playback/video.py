@@ -6,6 +6,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
-from engine.formats.film import EXPECTED, open_film
+from engine.formats.film import EXPECTED, begin_s, moving, open_film
 
 if TYPE_CHECKING:
     import av
@@ -21,10 +22,13 @@ if TYPE_CHECKING:
 Picture = npt.NDArray[np.uint8]  # (height, width, 3)
 
 MAX_PIXELS = 8192 * 4608
+LARGE_PIXELS = 4096 * 2304
 SHOWN_PX = 480  # the longer side of what is kept: the panel is small
 CACHE_BYTES = 96 * 2**20
 NEAR_S = 1.0  # going on decoding is quicker than seeking up to here
 MAX_DECODED = 2_000  # frames in search of one; a stream that needs more is damaged
+WIDEST = 8.0  # width of a pixel over its height, or the inverse; more is damage
+MATRIX_BYTES = 36
 LAST_S = 1.0 / 24  # how long a frame is shown that has no successor
 
 
@@ -54,7 +58,7 @@ class Video:
         except FormatError:
             self._file.close()
             raise
-        self._begin = self._stream.start_time or 0
+        self._begin_s = begin_s(self._file)
         self._ahead: Iterator[av.VideoFrame] | None = None
         self._next: tuple[float, Picture] | None = None  # decoded, but until when it lasts is not known yet
         self._end_s = math.inf  # until it is known
@@ -77,15 +81,16 @@ class Video:
             raise FormatError(f"{self.path.name} is damaged at {time_s:.1f} s.", "Export the video again.") from error
 
     def _picture_stream(self) -> Any:
-        # a picture that is attached to sound as its cover is no video
-        moving = [s for s in self._file.streams.video if "attached_pic" not in str(s.disposition).lower()]
-        if not moving:
+        found = moving(self._file)
+        if not found:
             raise FormatError(f"{self.path.name} has no moving picture.", EXPECTED)
-        stream = moving[0]
+        stream = found[0]
         if stream.codec_context is None or not stream.time_base:
             raise FormatError(f"{self.path.name} is in a format that cannot be decoded here.", EXPECTED)
         _require_small(stream.codec_context.width, stream.codec_context.height, self.path)
         stream.thread_type = "AUTO"
+        if stream.codec_context.width * stream.codec_context.height > LARGE_PIXELS:
+            stream.codec_context.thread_count = 1  # each thread holds pictures of its own, 57 MB each at 8K
         return stream
 
     def _kept(self, time_s: float) -> Frame | None:
@@ -108,8 +113,8 @@ class Video:
     def _seek(self, time_s: float) -> None:
         """Go to a key frame before a time: where pictures are stored out of order the first found may lie after it."""
         for earlier_s in (0.0, 1.0, 10.0, math.inf):
-            back = max(0, int((time_s - earlier_s) / self._stream.time_base)) if earlier_s < time_s else 0
-            self._file.seek(self._begin + back, stream=self._stream, backward=True)
+            back_s = max(0.0, time_s - earlier_s)
+            self._file.seek(int((self._begin_s + back_s) / self._stream.time_base), stream=self._stream, backward=True)
             self._ahead = self._file.decode(self._stream)
             self._next = self._read()
             if self._next is not None and self._next[0] <= time_s:
@@ -128,7 +133,8 @@ class Video:
         for frame in self._ahead or ():
             if frame.pts is not None:
                 _require_small(frame.width, frame.height, self.path)
-                return float((frame.pts - self._begin) * self._stream.time_base), _small(frame)
+                start_s = float(frame.pts * self._stream.time_base) - self._begin_s
+                return start_s, _small(frame, self._stream.codec_context.sample_aspect_ratio)
         return None
 
     def _keep(self, frame: Frame, around_s: float) -> None:
@@ -150,9 +156,22 @@ def _require_small(width: int, height: int, path: Path) -> None:
         raise FormatError(f"{path.name} has pictures of {width} × {height}, which cannot be shown.", EXPECTED)
 
 
-def _small(frame: av.VideoFrame) -> Picture:
-    """Return a frame at the size it is shown, the right way up."""
-    scale = min(1.0, SHOWN_PX / max(frame.width, frame.height))
-    width, height = (max(2, round(side * scale)) for side in (frame.width, frame.height))
-    picture = frame.reformat(width=width, height=height, format="rgb24").to_ndarray()
-    return np.ascontiguousarray(np.rot90(picture, round(frame.rotation / 90)))
+def _small(frame: av.VideoFrame, pixel_aspect: Fraction | None) -> Picture:
+    """Return a frame at the size it is shown, with square pixels, the right way up."""
+    aspect = float(pixel_aspect) if pixel_aspect and 1 / WIDEST <= pixel_aspect <= WIDEST else 1.0
+    scale = min(1.0, SHOWN_PX / max(frame.width * aspect, frame.height))
+    width, height = (max(2, round(side * scale)) for side in (frame.width * aspect, frame.height))
+    picture: Picture = (
+        frame.reformat(width=width, height=height, format="rgb24").to_ndarray().astype(np.uint8, copy=False)
+    )
+    return np.ascontiguousarray(_upright(picture, frame.side_data.get("DISPLAYMATRIX")))
+
+
+def _upright(picture: Picture, matrix: Any) -> Picture:
+    """Return a picture turned and mirrored as the display matrix of its film says: x' = a x + c y, y' = b x + d y."""
+    if matrix is None or len(bytes(matrix)) < MATRIX_BYTES:
+        return picture
+    a, b, _, c, d = np.frombuffer(bytes(matrix), np.int32, 5).tolist()
+    if abs(a) + abs(d) < abs(b) + abs(c):
+        picture, a, d = picture.transpose(1, 0, 2), c, b
+    return picture[:: -1 if d < 0 else 1, :: -1 if a < 0 else 1]

@@ -80,6 +80,11 @@ class Labelling:
         if state.method != LABELS:
             state.use(method=LABELS)
         known = state.target.path
+        if stored.elsewhere and (known is None or known.absolute() != Path(stored.elsewhere)):
+            name = stored.elsewhere.replace("\\", "/").rpartition("/")[2][:60]
+            raise EditError(
+                f"{path.name} is for the head {name!r}, which does not lie beside it.", "Choose that head first."
+            )
         if stored.target is None or (known is not None and known.absolute() == stored.target.absolute()):
             self._change(stored.labels, f"read {path.name}")
         else:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from engine.clean.landing import Landing, advance
 from engine.clean.landing import still as no_landing
 from engine.clean.network import _OFFSET, _RATE, CleanNetwork, from_config
-from engine.models.checkpoint import MODELS, load_model
+from engine.models.checkpoint import MODELS, load_model, rebuilt
 from engine.take import MODEL_FPS, SHAPES
 
 Floats = npt.NDArray[np.float32]
@@ -169,9 +169,7 @@ def _halves(hidden: int) -> Floats:
 def load_network(path: Path = MODELS / "clean.safetensors") -> CleanNetwork:
     """Read the network; raises `AssetError` where it is missing or damaged."""
     tensors, config = load_model(path, kind="clean")
-    network = from_config(config)
-    network.load_state_dict(tensors)
-    return network.eval()
+    return rebuilt(lambda: from_config(config), tensors, path, kind="clean")
 
 
 @lru_cache(maxsize=1)

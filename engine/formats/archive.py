@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import lzma
 import struct
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Iterable
@@ -19,7 +21,20 @@ from engine.formats.content import require_file
 
 MAX_BYTES = 512 << 20  # of all arrays that are read, unpacked; zeros are packed a thousandfold
 # What numpy and zipfile raise over damaged bytes; RuntimeError stands for encryption.
-FAULTS = (OSError, KeyError, ValueError, EOFError, RuntimeError, MemoryError, struct.error, zlib.error)
+FAULTS = (
+    *(
+        OSError,
+        EOFError,
+        LookupError,
+        ValueError,
+        TypeError,
+        RuntimeError,
+        ArithmeticError,
+        MemoryError,
+        AttributeError,
+    ),
+    *(struct.error, zlib.error, lzma.LZMAError, tokenize.TokenError, SyntaxError),
+)
 DAMAGED = (*FAULTS, zipfile.BadZipFile)
 
 

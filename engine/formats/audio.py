@@ -33,6 +33,8 @@ STEREO = 2
 MAX_SAMPLES = 2**30  # of all channels, 4 GiB: three hours of stereo at 48 kHz; a tiny file can declare days of silence
 IN_MEMORY_SAMPLES = 2**25  # 128 MiB; a longer recording lies in a temporary file that is mapped
 BLOCK = 2**16  # samples of one channel
+MAX_SILENCE_S = 300.0  # that is put where a film's sound begins later than its picture, or pauses
+LEAST_GAP_S = 0.02  # stamps that are off by less are rounded; some kinds of film count in milliseconds or frames
 BIN, GROW = 128, 4  # samples per bin of the finest peaks; bins of one level in a bin of the next
 
 
@@ -240,17 +242,58 @@ def _filmed(path: Path) -> Iterator[tuple[int, Samples]]:
         if not file.streams.audio:
             raise FormatError(f"{path.name} has no sound.", EXPECTED)
         track = file.streams.audio[0]
+        if track.codec_context is None or not track.time_base:
+            raise FormatError(f"The sound of {path.name} is in a format that cannot be decoded here.", EXPECTED)
         if not MIN_RATE <= track.rate <= MAX_RATE:
             raise FormatError(f"{path.name} gives its rate as {track.rate:,} Hz, which cannot be played.", EXPECTED)
         layout = "stereo" if track.channels == STEREO else "mono"
         evened = av.AudioResampler("flt", layout, track.rate, frame_size=BLOCK)
+        place = _Place(track.rate, film.begin_s(file), path)
         try:
             for frame in chain(file.decode(track), [None]):
                 for part in evened.resample(frame):
                     samples = part.to_ndarray().astype(np.float32, copy=False)
-                    yield track.rate, _narrowed(samples.reshape(-1, part.layout.nb_channels))
+                    block = _narrowed(samples.reshape(-1, part.layout.nb_channels))
+                    at_s = None if part.pts is None or not part.time_base else float(part.pts * part.time_base)
+                    for placed in place.put(block, at_s):
+                        yield track.rate, placed
         except (av.FFmpegError, ValueError) as error:
             raise FormatError(f"The sound of {path.name} is damaged.", "Export the video again.") from error
+
+
+class _Place:
+    """Puts decoded parts where their time stamps say: silence into gaps, and nothing twice.
+
+    Parameters
+    ----------
+    rate : samples per second
+    begin_s : the time stamp of the first sample that is kept
+    path : named in errors
+    """
+
+    def __init__(self, rate: int, begin_s: float, path: Path) -> None:
+        self._rate, self._begin_s, self._path = rate, begin_s, path
+        self._count = 0  # samples so far, of one channel
+        self._silence_s = 0.0
+
+    def put(self, block: Samples, at_s: float | None) -> Iterator[Samples]:
+        """Yield the silence before a part, if there is any, and what of the part does not overlap the one before."""
+        late_s = 0.0 if at_s is None else at_s - self._begin_s - self._count / self._rate
+        if late_s > LEAST_GAP_S:
+            self._silence_s += late_s
+            if self._silence_s > MAX_SILENCE_S:
+                raise FormatError(
+                    f"The sound of {self._path.name} begins, or pauses, for more than {MAX_SILENCE_S / 60:g} minutes.",
+                    "Export the video again.",
+                )
+            silence = np.zeros((round(late_s * self._rate), *block.shape[1:]), np.float32)
+            self._count += len(silence)
+            yield from (silence[at : at + BLOCK] for at in range(0, len(silence), BLOCK))
+        elif late_s < -LEAST_GAP_S:
+            block = block[min(len(block), round(-late_s * self._rate)) :]
+        self._count += len(block)
+        if len(block):
+            yield block
 
 
 def _narrowed(block: Samples) -> Samples:
@@ -282,7 +325,13 @@ class _Store:
         self._channels = block.shape[1] if block.ndim > 1 else 1
         if self._count > MAX_SAMPLES:
             raise FormatError(f"{path.name} is longer than Retake plays.", "Cut out the part that belongs to the take.")
-        self._file.write(np.ascontiguousarray(block).data)
+        try:
+            self._file.write(np.ascontiguousarray(block).data)
+        except OSError as error:
+            reason = (error.strerror or "unknown reason").lower()
+            raise FormatError(
+                f"{path.name} could not be decoded: its samples found no room, {reason}.", "Make room on the disk."
+            ) from error
 
     def finished(self) -> Samples:
         """Return all samples, (n,) or (n, 2)."""

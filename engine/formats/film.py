@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from engine.errors import FormatError
 from engine.formats.content import require_file
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 ENDINGS = (".mov", ".mp4", ".m4v", ".mkv", ".webm", ".avi")
 TABLES = ("_cal", "_raw", "_neutral")  # what the app adds to a take's name for its files
 FAMILIES = "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi"  # no play lists: those name other files and addresses
+FARTHEST_S = 1e7
 MAX_BYTES = 1 << 44  # a film is never read whole
 EXPECTED = "Retake reads MOV, MP4, MKV, WebM and AVI files."
 
@@ -28,6 +30,29 @@ def open_film(path: Path) -> InputContainer:
         return av.open(f"file:{path.resolve()}", container_options=options)
     except (av.FFmpegError, OSError, ValueError) as error:
         raise FormatError(f"{path.name} could not be read as a video.", EXPECTED) from error
+
+
+def begin_s(file: InputContainer) -> float:
+    """Return the time stamp, in seconds, at which a film begins for whoever watches it: that of its first track.
+
+    Sound and picture are both placed from here on, so that one which begins later is heard or seen later. Samples
+    that only prime a decoder have stamps before zero; a film never begins with them.
+    """
+    starts = [start_s(stream) for stream in (*file.streams.audio, *moving(file))]
+    return max(0.0, min(starts, default=0.0))
+
+
+def start_s(stream: Any) -> float:
+    """Return the first time stamp of a track in seconds, 0 where it gives none that can be."""
+    if stream.start_time is None or not stream.time_base:
+        return 0.0
+    start = float(stream.start_time * stream.time_base)
+    return start if math.isfinite(start) and abs(start) < FARTHEST_S else 0.0
+
+
+def moving(file: InputContainer) -> list[Any]:
+    """Return the tracks of moving pictures; one that is attached to sound as its cover is none."""
+    return [stream for stream in file.streams.video if "attached_pic" not in str(stream.disposition).lower()]
 
 
 def beside(take: Path) -> Path | None:

@@ -30,11 +30,13 @@ class LabelFile:
     Attributes
     ----------
     labels : weight by shape, by frame; a shape that is not named stays as the source has it
-    target : the character's file, or None
+    target : the character's file, in the folder of the labels or below it; None where they name none, or one elsewhere
+    elsewhere : the character's file as it was named, where it lies elsewhere; it is never opened for the asking of a file
     """
 
     labels: Mapping[int, Mapping[str, float]]
     target: Path | None = None
+    elsewhere: str = ""
 
 
 def read(path: Path) -> LabelFile:
@@ -52,22 +54,8 @@ def read(path: Path) -> LabelFile:
         labels[frame] = {str(shape): _weight(str(shape), value, frame, path) for shape, value in weights.items()}
     if not labels:
         raise FormatError(f"{path.name} labels no frame.", EXPECTED)
-    return LabelFile(labels, None if target is None else _beside(target, path))
-
-
-def _beside(target: str, path: Path) -> Path:
-    """Return the target's path; raises `FormatError` for one that leads out of the label file's folder."""
-    try:
-        folder = path.resolve().parent
-        inside = (folder / target).resolve().is_relative_to(folder)
-    except (OSError, ValueError, RuntimeError) as error:
-        raise FormatError(f"{path.name} names a target that is not a file's name.", EXPECTED) from error
-    if not inside:
-        raise FormatError(
-            f"{path.name} names the target {target[:60]!r}, which is outside its folder.",
-            "Copy the head beside the label file and name it so, or remove the target from the file.",
-        )
-    return path.parent / target
+    beside = None if target is None else _beside(target, path)
+    return LabelFile(labels, beside, target if target is not None and beside is None else "")
 
 
 def write(file: LabelFile, path: Path) -> None:
@@ -92,11 +80,26 @@ def _json(text: str, path: Path) -> tuple[str | None, Iterable[tuple[Any, Any]]]
     try:
         held = json.loads(text)
         target, rows = held.get("target"), [(row["frame"], row["weights"]) for row in held["labels"]]
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError, MemoryError):
         raise FormatError(f"{path.name} is not a list of labelled frames.", EXPECTED) from None
     if target is not None and (not isinstance(target, str) or not target or "\0" in target):
         raise FormatError(f"{path.name} names a target that is not a file's name.", EXPECTED)
     return target, rows
+
+
+def _beside(target: str, path: Path) -> Path | None:
+    """Return the character that a label file names, where it lies in its folder or below; else None.
+
+    Whoever wrote the file may know of other folders: it is not for him to say what is opened there.
+    """
+    named = target.replace("\\", "/")
+    leads_out = named.startswith("/") or ":" in named.split("/")[0] or ".." in named.split("/")
+    try:
+        found = path.parent / named
+        inside = not leads_out and found.resolve().is_relative_to(path.parent.resolve())
+    except (OSError, ValueError, RuntimeError):
+        inside = False
+    return found if inside else None
 
 
 def _csv(text: str, path: Path) -> tuple[None, Iterable[tuple[Any, Any]]]:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from engine.errors import FormatError
+from engine.formats.budget import BUDGET
 from engine.formats.decimals import floats
 from engine.formats.livelink_origin import Places
 from engine.take import Array, Mask
 
 BLOCK_BYTES = 1 << 18  # of text read at once: it stays in the cache, and nobody waits for more than one
+FEW_VALUES = 20_000_000  # an hour and a half at 60 fps; a longer file has its own bytes to show for them
 COMMA, NEWLINE = b",\n"
 Rows = tuple[list[bytes], Array, Mask, Places]
 
@@ -22,6 +25,8 @@ def table(content: bytes, first: int, header: list[str], path: Path, report: Cal
 
     A row whose count is 0 is a lost frame, however many cells follow: spreadsheets and pandas fill them up.
     """
+    # a lost row of four bytes is as many numbers as the header has columns
+    budget = replace(BUDGET, values=max(FEW_VALUES, len(content)))
     timecodes: list[bytes] = []
     values: list[Array] = []
     lost: list[Mask] = []
@@ -29,6 +34,8 @@ def table(content: bytes, first: int, header: list[str], path: Path, report: Cal
     stop = _end(content, first)
     while first < stop:
         end = content.find(b"\n", min(first + BLOCK_BYTES, stop), stop) % (stop + 1)
+        rows = len(timecodes) + content.count(b"\n", first, end) + 1
+        budget.require(path.name, values=rows * len(header))
         block = _block(content[first:end] + b"\n", len(header), len(timecodes) + 2, path, last=end == stop)
         timecodes += block[0]
         values.append(block[1])

@@ -24,6 +24,7 @@ BASES = (60, 24, 25, 30, 48, 50, 90, 100, 120, 240, 1000, 1_000_000)
 FEWEST, MOST = 10, 240  # counts per second of a writer that keeps to no standard, such as a webcam's 15 or 28
 BLOCK_ROWS = 4096  # of timecodes read at once
 COLON = ord(":")
+LARGEST = 1e13  # that a field may be: microseconds of some months
 MOST_FIELDS = 4
 LARGEST_FIELD, LARGEST_NUMBER = 1e7, 1e19  # of several numbers, microseconds at most; of one alone, those since 1970
 SAMPLE = 200  # timecodes whose looks are taken for those of all
@@ -184,7 +185,8 @@ def _numbers(timecodes: Sequence[bytes], fields: int) -> Array:
     ends = np.flatnonzero(text == COLON)
     if len(ends) == fields * len(timecodes):
         try:
-            return floats(text, np.concatenate([[0], ends[:-1] + 1]), ends).reshape(-1, fields)
+            numbers = floats(text, np.concatenate([[0], ends[:-1] + 1]), ends).reshape(-1, fields)
+            return np.where(np.abs(numbers) <= LARGEST, numbers, np.nan)
         except ValueError:
             pass  # one of them is none: each is looked at alone
     if len(timecodes) > 1:

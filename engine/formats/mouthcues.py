@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -14,29 +14,34 @@ from engine.speech.visemes import Cue
 
 # The class that each mouth shape looks most like.
 SHAPES = {"A": "mbp", "B": "sz", "C": "eh", "D": "aa", "E": "ao", "F": "uw", "G": "fv", "H": "tn", "X": "sil"}
+MAX_BYTES = 16 << 20
 _EXPECTED = "Retake reads the TSV, XML and JSON that Rhubarb Lip Sync writes."
 
 
-def read(path: Path) -> list[Cue]:
-    """Return the cues with their shapes as viseme classes; raises `FormatError` that names the cue to blame."""
-    text = read_text(path)
+def read(path: Path, say: Callable[[str], None] = lambda _: None) -> tuple[None, list[Cue]]:
+    """Return the cues, of no tier, with their shapes as viseme classes; a shape that is none stays as it is written.
+
+    `say` hears of cues without times that can be, which are left out. Raises `FormatError` for what holds no cues.
+    """
+    text = read_text(path, at_most=MAX_BYTES)
     rows = {".json": _json, ".xml": _xml}.get(path.suffix.lower(), _tsv)(text, path)
-    return [_cue(row, number, path) for number, row in enumerate(rows, start=1)]
+    if not rows:
+        raise FormatError(f"{path.name} holds no mouth cues.", _EXPECTED)
+    cues = [_cue(row) for row in rows]
+    if missing := cues.count(None):
+        if missing == len(cues):
+            raise FormatError(f"{path.name} has no start, end and shape in any of its cues.", _EXPECTED)
+        first = cues.index(None) + 1
+        say(f"{path.name} has no possible start and end in {missing} of {len(cues)} cues, the first in cue {first}.")
+    return None, [cue for cue in cues if cue is not None]
 
 
-def _cue(row: Sequence[Any], number: int, path: Path) -> Cue:
+def _cue(row: Sequence[Any]) -> Cue | None:
     try:
         start, stop, shape = float(row[0]), float(row[1]), str(row[2]).strip()
-    except (TypeError, ValueError, IndexError):
-        raise FormatError(f"{path.name} has no start, end and shape in cue {number}.", _EXPECTED) from None
-    if not 0 <= start <= stop < 1e9:
-        raise FormatError(f"{path.name} has a cue that ends before it begins: number {number}.")
-    if shape not in SHAPES:
-        raise FormatError(
-            f"{path.name} has the unknown mouth shape {shape[:40]!r} in cue {number}.",
-            f"Shapes are: {', '.join(SHAPES)}.",
-        )
-    return Cue(start, stop, SHAPES[shape])
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return Cue(start, stop, SHAPES.get(shape, shape)) if 0 <= start <= stop < 1e9 else None
 
 
 def _tsv(text: str, path: Path) -> list[Sequence[Any]]:
@@ -50,8 +55,8 @@ def _tsv(text: str, path: Path) -> list[Sequence[Any]]:
 def _json(text: str, path: Path) -> list[Sequence[Any]]:
     try:
         cues = json.loads(text)["mouthCues"]
-        return [(cue["start"], cue["end"], cue["value"]) for cue in cues]
-    except (ValueError, KeyError, TypeError, RecursionError):
+        return [tuple(cue.get(key) for key in ("start", "end", "value")) for cue in cues]
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise FormatError(f"{path.name} holds no mouth cues.", _EXPECTED) from None
 
 
@@ -60,6 +65,6 @@ def _xml(text: str, path: Path) -> list[Sequence[Any]]:
         raise FormatError(f"{path.name} declares a document type, which mouth cues do not need.", _EXPECTED)
     try:
         found = list(ElementTree.fromstring(text).iter("mouthCue"))
-    except ElementTree.ParseError:
+    except (ElementTree.ParseError, ValueError, RecursionError):
         raise FormatError(f"{path.name} is not well-formed XML.", _EXPECTED) from None
     return [(cue.get("start"), cue.get("end"), cue.text or "") for cue in found]

@@ -10,7 +10,7 @@ import torch
 from torch import Tensor, nn
 
 from engine.controls import CONTROLS
-from engine.models.checkpoint import MODELS, load_model
+from engine.models.checkpoint import MODELS, load_model, rebuilt
 from engine.models.threads import one_thread
 from engine.models.unet import ALIGNMENT, UNet
 from engine.take import SHAPES, Array
@@ -53,9 +53,7 @@ class Expected(nn.Module):
 def load(path: Path = MODELS / "expected.safetensors") -> Expected:
     """Read the networks; raises `AssetError` where they are missing or damaged."""
     tensors, config = load_model(path, kind="expected")
-    network = Expected(**config)
-    network.load_state_dict(tensors)
-    return network.eval()
+    return rebuilt(lambda: Expected(**config), tensors, path, kind="expected")
 
 
 @lru_cache(maxsize=1)

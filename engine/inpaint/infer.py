@@ -11,11 +11,12 @@ import numpy as np
 import torch
 from scipy.ndimage import gaussian_filter1d
 
+from engine.errors import AssetError
 from engine.inpaint.closures import shut_lips
 from engine.inpaint.gap import Gap, Ground, Statistics, bent, ground, left_open, resting, substantial, unsteered
 from engine.inpaint.lend import LENDERS
 from engine.inpaint.network import Generator, GeneratorConfig, noise_curves
-from engine.models.checkpoint import MODELS, load_model, save_model
+from engine.models.checkpoint import MODELS, load_model, rebuilt, save_model
 from engine.models.threads import one_thread
 from engine.take import Array
 
@@ -111,9 +112,11 @@ def save_filler(path: Path, filler: Filler) -> None:
 def load(path: Path = MODELS / "inpaint.safetensors") -> Filler:
     """Read a filler; raises `AssetError` where it is missing or damaged."""
     tensors, config = load_model(path, kind="inpaint")
-    generator = Generator(GeneratorConfig(**config))
-    statistics = Statistics(*(tensors.pop(f"statistics.{name}").numpy() for name in _STATISTICS))
-    generator.load_state_dict(tensors)
+    missing = torch.zeros(0)
+    statistics = Statistics(*(tensors.pop(f"statistics.{name}", missing).numpy() for name in _STATISTICS))
+    generator = rebuilt(lambda: Generator(GeneratorConfig(**config)), tensors, path, kind="inpaint")
+    if not all(np.size(getattr(statistics, name)) for name in _STATISTICS):
+        raise AssetError(f"The model file {path.name} lacks its statistics.", "Train it: retake train inpaint.")
     return Filler(generator, statistics)
 
 

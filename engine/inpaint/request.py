@@ -134,6 +134,8 @@ def _curve(name: str, curve: Array | float, length: int) -> Array:
             f"The curve for {name} has {counted(asked.size, 'value')} where the span has {counted(length, 'frame')}.",
             "Give one value per frame of the span, or one for all.",
         )
+    if np.isnan(asked).all():
+        raise EditError(f"The curve for {name} asks for nothing: it holds no number.")
     if (asked > FARTHEST_MM).any() or (asked < 0).any():
         raise EditError(f"The curve for {name} asks for a distance that is negative or beyond {FARTHEST_MM:,.0f} mm.")
     return np.array(np.broadcast_to(asked.reshape(-1), (length,)))

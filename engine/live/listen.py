@@ -22,7 +22,8 @@ LOOPBACK = "127.0.0.1"
 QUEUE = 64  # datagrams waiting to be cleaned: half a second of the fastest phone
 FRAMES = 512  # cleaned frames waiting to be shown
 PER_S = 500.0  # datagrams a second of one sender that are read at all; a phone sends 60
-SENDERS = 8  # that have an allowance of their own
+SENDERS = 32  # that have an allowance of their own
+SILENT_S = 10.0  # after which a sender's allowance makes room for another's
 LISTEN_TO = "Use 127.0.0.1, or 0.0.0.0 to hear the whole network."
 _POLL_S = 0.2  # how long closing may take
 _LATENCIES = 1024
@@ -54,7 +55,14 @@ class Allowances:
         self._left: dict[str, tuple[float, float]] = {}  # tokens, and when they were counted
 
     def take(self, sender: str, now_s: float) -> bool:
-        """Return whether one more datagram of a sender may pass now; senders beyond `SENDERS` share one bucket."""
+        """Return whether one more datagram of a sender may pass now; senders beyond `SENDERS` share one bucket.
+
+        Whoever sent nothing for `SILENT_S` is forgotten when another needs the place.
+        """
+        if sender not in self._left and len(self._left) >= SENDERS:
+            oldest = min((name for name in self._left if name), key=lambda name: self._left[name][1])
+            if now_s - self._left[oldest][1] > SILENT_S:
+                del self._left[oldest]
         key = sender if sender in self._left or len(self._left) < SENDERS else ""
         left, last_s = self._left.get(key, (self._burst, now_s))
         left = min(self._burst, left + (now_s - last_s) * self._per_s)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.errors import EditError
 from engine.live.packet import MAX_FPS, ROTATION_COUNT
@@ -12,6 +14,9 @@ from engine.live.stream import Arrival
 from engine.take import SHAPES, Array, Take
 
 MAX_FRAMES = 1_000_000  # over four and a half hours at 60 fps; a sender gone mad must not fill memory
+# A sender whose clock leaps between packets declares frames by the million: 20,000 are five minutes at 60 fps.
+FEW_FRAMES, FRAMES_PER_ARRIVAL = 20_000, 8
+LEAPT = "The sender's clock leapt far ahead, again and again: the gaps were shortened."
 STANDARD_FPS = (24.0, 25.0, 30.0, 50.0, 60.0, 120.0)
 _CHUNK = 4096
 _COLUMNS = 2 + len(SHAPES) + ROTATION_COUNT
@@ -71,8 +76,21 @@ class Recorder:
         fps = rate_of(rows[:, 0], rows[:, 1])
         frame = np.round((rows[:, 0] - rows[0, 0]) * fps).astype(np.int64)
         kept = np.isfinite(rows[:, 2])
+        frame, shortened = _within(frame, max(FEW_FRAMES, FRAMES_PER_ARRIVAL * len(frame)))
         first = frame[kept][0]  # interpolation before the first face would invent a still one
-        return _on_grid(rows[kept], frame[kept] - first, int(frame[-1] - first) + 1, fps, name)
+        taken = _on_grid(rows[kept], frame[kept] - first, int(frame[-1] - first) + 1, fps, name)
+        return replace(taken, notices=(LEAPT,)) if shortened else taken
+
+
+def _within(frame: npt.NDArray[np.int64], most: int) -> tuple[npt.NDArray[np.int64], bool]:
+    """Return frame numbers, (n,) in order, whose gaps are shortened until there are at most so many frames in all."""
+    steps = np.diff(frame)
+    if not len(steps) or int(steps.sum()) < most:
+        return frame, False
+    longest = int(steps.max())
+    while longest > 1 and int(np.minimum(steps, longest).sum()) >= most:
+        longest //= 2
+    return np.concatenate([[0], np.cumsum(np.minimum(steps, longest))]), True
 
 
 def _on_grid(rows: Array, frame: np.ndarray, frames: int, fps: float, name: str) -> Take:

@@ -14,6 +14,8 @@ from engine.live.packet import Drop, Floats, Packet
 from engine.take import SHAPES
 
 MAX_SUBJECTS = 16  # names to choose from; a flood of invented ones must not fill memory
+SILENT_S = 10.0  # after which a name may make room for another, and the face that is followed for one that sends
+AHEAD_S = 10.0  # by which a sender's clock may run ahead of the time that has passed
 RESTART_S = 10.0  # a leap of the sender's clock beyond this is a new beginning, not a gap
 LATE_S = 2.0  # a frame older than this cannot be a reordered one: the sender's clock was set back
 MAX_BRIDGE = 16  # frames of own motion put into one gap; more would delay the frame that ends it
@@ -68,6 +70,7 @@ class Clock:
     def __init__(self) -> None:
         self._shift: float | None = None  # what is added to the sender's time
         self._last, self._next = 0.0, 0.0
+        self._begin_s: float | None = None  # when the first packet arrived
 
     def restart(self) -> None:
         """Let the next packet follow the last one, whatever its sender's clock says."""
@@ -79,6 +82,11 @@ class Clock:
         if self._shift is None or not -LATE_S <= stated + self._shift - self._last <= RESTART_S:
             self._shift = self._next - stated
         time_s = stated + self._shift
+        if self._begin_s is None:
+            self._begin_s = arrived_s
+        if time_s > max(arrived_s - self._begin_s + AHEAD_S, self._next):  # small leaps add up, and each would be a gap
+            time_s = self._next
+            self._shift = time_s - stated
         self._next = max(self._next, time_s + 1 / packet.fps)
         late = time_s < self._last
         self._last = max(self._last, time_s)
@@ -106,6 +114,8 @@ class Stream:
         self.subject, self.strength, self.on_arrival = subject, strength, on_arrival
         self.counts: Counter[str] = Counter()
         self.subjects: list[str] = []
+        self._heard: dict[str, tuple[int, float]] = {}  # by name: how often, and when last
+        self._asked_for = subject is not None
         self._cleaner = cleaner or bundled()
         self._chosen: str | None = None
         self._clock = Clock()
@@ -129,13 +139,13 @@ class Stream:
         arrived_s : when it arrived, on the clock that `now` reads
         """
         if self._chosen is not None:
-            self.subject, self._chosen = self._chosen, None
+            self.subject, self._chosen, self._asked_for = self._chosen, None, True
             self._restart()
         decoded = decode(data)
         if isinstance(decoded, Drop):
             self.counts[decoded.value] += 1
             return None
-        if not self._follows(decoded.subject):
+        if not self._follows(decoded.subject, arrived_s):
             self.counts["another subject"] += 1
             return None
         arrival = self._arrival(decoded, arrived_s)
@@ -146,12 +156,34 @@ class Stream:
             return None
         return self._frame(arrival, decoded.subject, arrived_s, now)
 
-    def _follows(self, subject: str) -> bool:
-        if subject not in self.subjects and len(self.subjects) < MAX_SUBJECTS:
-            self.subjects.append(subject)
+    def _follows(self, subject: str, arrived_s: float) -> bool:
+        """Return whether a subject is the one that is followed: the first, or another that sends where that fell silent.
+
+        While a recording is made, and where the user chose, the subject stays.
+        """
+        self._hear(subject, arrived_s)
         if self.subject is None:
             self.subject = subject
+        elif subject != self.subject and not self._asked_for and self.on_arrival is None:
+            _, last_s = self._heard.get(self.subject, (0, -np.inf))
+            if arrived_s - last_s > SILENT_S:
+                self.subject = subject
+                self._restart()
         return subject == self.subject
+
+    def _hear(self, subject: str, arrived_s: float) -> None:
+        """Count a name; where there are too many, the one that is silent makes room, else that heard least.
+
+        Invented names are heard once each, so that none of them keeps a phone out that sends sixty times a second.
+        """
+        count, _ = self._heard.get(subject, (0, 0.0))
+        if count == 0 and len(self._heard) >= MAX_SUBJECTS:
+            others = [name for name in self._heard if name != self.subject]
+            silent = [name for name in others if arrived_s - self._heard[name][1] > SILENT_S]
+            self._heard.pop(min(silent or others, key=lambda name: self._heard[name]))
+        self._heard[subject] = count + 1, arrived_s
+        if count == 0:
+            self.subjects = list(self._heard)  # a new list: others read it on threads of their own
 
     def _arrival(self, packet: Packet, arrived_s: float) -> Arrival:
         weights = packet.weights

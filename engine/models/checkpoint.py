@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import torch
 from safetensors import SafetensorError, safe_open
@@ -19,6 +19,10 @@ from engine.formats.atomic import write_bytes
 
 MODELS = assets.MODELS
 VERSION = 1
+MAX_SIZE = 4096  # units, layers or frames; the largest in use is 512
+# What torch and a network's constructor raise for sizes and names that do not fit.
+FAULTS = (TypeError, ValueError, KeyError, IndexError, AttributeError, RuntimeError, OverflowError, ZeroDivisionError)
+Network = TypeVar("Network", bound=torch.nn.Module)
 
 
 @dataclass(frozen=True)
@@ -49,13 +53,56 @@ def load_model(path: Path, *, kind: str) -> tuple[dict[str, torch.Tensor], dict[
         with safe_open(str(path), framework="pt") as file:
             metadata = file.metadata() or {}
             tensors = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 - not a dict
-    except (OSError, SafetensorError) as error:
+    except (OSError, SafetensorError, ValueError, RuntimeError, TypeError, OverflowError) as error:
         raise AssetError(
             f"The model file {path.name} is missing or damaged.", f"Train it: retake train {kind}."
         ) from error
     if metadata.get("kind") != kind or metadata.get("version") != str(VERSION):
         raise AssetError(f"{path.name} is not a {kind} model of this version.", f"Train it: retake train {kind}.")
-    return tensors, json.loads(metadata.get("config", "{}"))
+    return tensors, _config(metadata.get("config", "{}"), path, kind)
+
+
+def rebuilt(build: Callable[[], Network], tensors: Mapping[str, torch.Tensor], path: Path, *, kind: str) -> Network:
+    """Return the network that `build` makes, with the tensors of its file, ready to infer.
+
+    It is made without memory first, so that sizes that the file's tensors do not have take none. Raises `AssetError`.
+    """
+    try:
+        with torch.device("meta"):
+            expected = {name: tensor.shape for name, tensor in build().state_dict().items()}
+        if expected != {name: tensor.shape for name, tensor in tensors.items()}:
+            raise ValueError("its tensors are those of another network")
+        network = build()
+        network.load_state_dict(dict(tensors))
+    except FAULTS as error:
+        raise _damaged(path, kind) from error
+    network.eval()
+    return network
+
+
+def _config(text: str, path: Path, kind: str) -> dict[str, Any]:
+    """Return a configuration, whose numbers are those of a network that can be."""
+    try:
+        config = json.loads(text)
+        if not isinstance(config, dict):
+            raise ValueError("a configuration is a table")
+        _require_sizes(config)
+    except (ValueError, TypeError, RecursionError, MemoryError) as error:
+        raise _damaged(path, kind) from error
+    return config
+
+
+def _require_sizes(value: Any) -> None:
+    """Raise `ValueError` for a whole number that no size of a network is: a million layers would be built one by one."""
+    if isinstance(value, dict | list):
+        for each in value.values() if isinstance(value, dict) else value:
+            _require_sizes(each)
+    elif isinstance(value, int) and not -MAX_SIZE <= value <= MAX_SIZE:
+        raise ValueError("a size of the network is not possible")
+
+
+def _damaged(path: Path, kind: str) -> AssetError:
+    return AssetError(f"The model file {path.name} is damaged.", f"Train it: retake train {kind}.")
 
 
 def save_card(path: Path, card: Card) -> None:

@@ -15,8 +15,10 @@ WORTH_IT = (
 MAX_RATIO = 1032  # no deflate stream can hold more bytes for each of its own
 SLACK_BYTES = 64
 PIECE_BYTES = 2**20
-ORDINARY_BYTES = 2**30  # what any project may unpack to; a larger one by the size of its file
+# What any project may unpack to; a larger one by the size of its file. Replaying holds the curves three times.
+ORDINARY_BYTES = 192 * 2**20
 ORDINARY_RATIO = 64
+LARGE_BYTES = 16 * 2**20  # from here on nothing is packed by more than that ratio, so that all that is written is read
 
 
 Pieces = list[bytes]
@@ -47,7 +49,9 @@ def pack(array: npt.NDArray[Any]) -> Pieces:
     content = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).reshape(-1).view("u1").data
     step = max(SAMPLE_BYTES, len(content) // SAMPLES)
     sample = b"".join(content[at : at + SAMPLE_BYTES] for at in range(0, len(content), step))
-    worth_it = len(zlib.compress(sample, 1)) < WORTH_IT * len(sample)
+    packed = len(zlib.compress(sample, 1))
+    refused = len(content) > LARGE_BYTES and packed * ORDINARY_RATIO < 2 * len(sample)
+    worth_it = packed < WORTH_IT * len(sample) and not refused
     stream = zlib.compressobj(1 if worth_it else 0)
     pieces = [stream.compress(content[at : at + PIECE_BYTES]) for at in range(0, len(content), PIECE_BYTES)]
     return [*pieces, stream.flush()]

@@ -7,9 +7,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
+from engine.errors import FormatError
 from engine.formats.content import require_file, unread
+from engine.project.held import is_open
 from engine.project.records import Media
 
+ENDING = ".retake"
 MAX_BYTES = 1 << 44  # a film is read in pieces
 
 
@@ -43,7 +46,7 @@ def name_of(media: Media) -> str:
 
 def attach(path: Path, folder: Path, *, kind: str, offset_s: float = 0.0) -> Media:
     """Return the record of a media file for a project in a folder; raises `FormatError` when it cannot be read."""
-    require_file(path, at_most=MAX_BYTES)
+    _require_medium(path)
     try:
         digest = _digest(path)
     except OSError as error:
@@ -66,12 +69,24 @@ def find(media: Media, folder: Path, elsewhere: Iterable[Path] = ()) -> Found:
     changed: Path | None = None
     for candidate in _candidates(media, folder, elsewhere):
         try:
+            _require_medium(candidate)
             if _digest(candidate) == media.sha256:
                 return Found(media, candidate)
-        except OSError:
+        except (OSError, FormatError):
             continue
         changed = changed or candidate
     return Found(media, None, changed)
+
+
+def _require_medium(path: Path) -> None:
+    """Raise `FormatError` for what is no ordinary file, and for the project that is open, under whatever name.
+
+    A program that opens a file a second time and closes it again gives up its locks on it (POSIX), unasked: another
+    Retake could then write to the project beside this one.
+    """
+    require_file(path, at_most=MAX_BYTES)
+    if path.suffix.lower() == ENDING or is_open(path):
+        raise FormatError(f"{path.name} is a project, and no sound or video.", "Choose a recording or a film.")
 
 
 def _candidates(media: Media, folder: Path, elsewhere: Iterable[Path]) -> Iterator[Path]:

@@ -16,7 +16,7 @@ from engine.take import SHAPES, Array, Mask, Take
 MARK = "mark"  # kind of an edit whose inputs are marks before and after
 FILL = "fill"  # kind of an edit that gave every one of its frames motion
 VISEMES = "visemes"  # kind of an edit whose inputs are a step on the visemes lane
-FASTEST_FPS = 10_000.0
+SLOWEST_FPS, FASTEST_FPS = 0.01, 10_000.0
 READING = "reading"  # kind of an edit whose inputs are how the take is read before and after
 
 
@@ -153,9 +153,12 @@ def read_as_of(stored: Mapping[str, Any]) -> ReadAs:
     Raises `KeyError`, `TypeError` or `EditError` for anything else.
     """
     fps, swapped = stored["fps"], stored["swapped"]
-    if type(swapped) is not bool or type(fps) is not float or not 0.0 < fps <= FASTEST_FPS:
+    if type(swapped) is not bool or type(fps) is not float or not SLOWEST_FPS <= fps <= FASTEST_FPS:
         raise TypeError("a reading has a rate, and sides that are exchanged or not")
-    return ReadAs(Reading(**stored["chosen"]), fps, swapped)
+    chosen = stored["chosen"]
+    if type(chosen["fps"]) not in (float, int, type(None)) or not isinstance(chosen["sides"], str):
+        raise TypeError("a choice is a rate and sides, or left open")
+    return ReadAs(Reading(**chosen), fps, swapped)
 
 
 @dataclass(frozen=True, eq=False)

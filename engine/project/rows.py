@@ -32,13 +32,13 @@ from engine.project.records import (
     marks_of,
     read_as_of,
 )
-from engine.project.replaying import said
+from engine.project.soundness import MAX_MARKS, MAX_NAME, MAX_WEIGHT, moment, require, require_marks, require_visemes
 from engine.project.tables import insert
-from engine.take import SHAPE_INDEX, SHAPES, Array, Take
+from engine.take import SHAPES, Array, Take
 
 MAX_FRAMES = 1_000_000  # over four hours at 60 fps
-MAX_FPS = 10_000.0
-MAX_WEIGHT = 1e6
+MIN_FPS, MAX_FPS = 0.01, 10_000.0
+MAX_EDITS = 10_000_000  # they are counted against the memory, too
 JSON_BYTES = 32  # that a character of JSON may grow to when it is read
 ROTATIONS = 9
 
@@ -61,9 +61,9 @@ def read_contents(database: sqlite3.Connection, budget: Budget) -> Contents:
     try:
         take = _read_take(database, budget)
         edits = tuple(_read_edits(database, len(take), budget))
-        _require_said(edits)
+        require_visemes(edits)
         position, verdict = one(database, "SELECT position, verdict FROM state")
-        _require(0 <= position <= len(edits), "its place in the undo history is not there")
+        require(0 <= position <= len(edits), "its place in the undo history is not there")
         return Contents(take, edits, position, _read_marks(database, verdict, len(take), budget))
     except EngineError as error:
         raise DamagedError(error.sentence.rstrip(".")) from error
@@ -73,12 +73,9 @@ def read_summary(database: sqlite3.Connection) -> Summary:
     """Return what a checked file is; raises `DamagedError`."""
     name, frames, fps = one(database, "SELECT name, frames, fps FROM take")
     position, changed = one(database, "SELECT position, changed FROM state")
-    _require(1 <= frames <= MAX_FRAMES and 0 < fps <= MAX_FPS, "its length or frame rate is not possible")
-    try:
-        when = datetime.fromisoformat(changed)
-    except ValueError as error:
-        raise DamagedError("the time of its last change is none") from error
-    return Summary(name, frames, fps, position, when if when.tzinfo else when.replace(tzinfo=UTC))
+    require(1 <= frames <= MAX_FRAMES and MIN_FPS <= fps <= MAX_FPS, "its length or frame rate is not possible")
+    require(len(name) <= MAX_NAME, "its name is too long")
+    return Summary(name, frames, fps, position, moment(changed))
 
 
 def write_edits(database: sqlite3.Connection, first: int, edits: Iterable[Edit]) -> None:
@@ -124,11 +121,12 @@ def _read_take(database: sqlite3.Connection, budget: Budget) -> Take:
     name, fps, start_s, frames, *blobs = one(
         database, "SELECT name, fps, start_s, frames, weights, lost, rotations FROM take"
     )
-    _require(1 <= frames <= MAX_FRAMES and 0 < fps <= MAX_FPS, "its length or frame rate is not possible")
-    _require(0 <= start_s <= 2 * DAY_S, "its time of day is not possible")
+    require(1 <= frames <= MAX_FRAMES and MIN_FPS <= fps <= MAX_FPS, "its length or frame rate is not possible")
+    require(len(name) <= MAX_NAME, "its name is too long")
+    require(0 <= start_s <= 2 * DAY_S, "its time of day is not possible")
     weights = unpack(blobs[0], (frames, len(SHAPES)), "<f8", budget)
     rotations = unpack(blobs[2], (frames, ROTATIONS), "<f8", budget)
-    _require(_possible(weights) and _possible(rotations), "a weight or rotation is not a finite number")
+    require(_possible(weights) and _possible(rotations), "a weight or rotation is not a finite number")
     lost = unpack(blobs[1], (frames,), "u1", budget) != 0
     take = Take(weights=weights, fps=fps, lost=lost, rotations=rotations, name=name, start_s=start_s)
     return replace(take, origin=read_origin(database, take, budget))
@@ -143,14 +141,15 @@ def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> It
         "SELECT place, kind, title, inputs, start, frames, lost, weights, controls, asked FROM edits ORDER BY place"
     )
     for index, (place, kind, title, inputs, start, frames, lost, weights, controls, asked) in enumerate(found):
-        _require(place == index and start >= 0 and 0 <= frames <= length - start, "an edit is out of place")
+        require(index < MAX_EDITS and len(kind) <= MAX_NAME and len(title) <= MAX_NAME, "an edit is not described")
+        require(place == index and start >= 0 and 0 <= frames <= length - start, "an edit is out of place")
         rows = unpack(weights, (frames, len(SHAPES)), "<f8", budget)
-        _require(_possible(rows), "an edit holds a weight that is not a finite number")
+        require(_possible(rows), "an edit holds a weight that is not a finite number")
         made_from = _json(inputs, budget)
-        _require(isinstance(made_from, dict), "an edit does not say what it was made from")
+        require(isinstance(made_from, dict), "an edit does not say what it was made from")
         if kind == MARK:
             for marks in ("before", "after"):
-                _require_sound(_marks_in(made_from, marks), length)
+                require_marks(_marks_in(made_from, marks), length)
         if kind == READING:
             _require_readings(made_from)
         asked_rows = _read_asked(asked, _texts(controls, budget), frames, budget)
@@ -161,7 +160,7 @@ def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> It
 def _read_asked(blob: object, names: tuple[str, ...], frames: int, budget: Budget) -> Array:
     """Return asked values in today's columns: a control that is new since has NaN, one that is gone is left out."""
     stored = unpack(blob, (frames, len(names)), "<f8", budget)
-    _require(not np.isinf(stored).any(), "an edit asks for a value that is not finite")
+    require(not np.isinf(stored).any(), "an edit asks for a value that is not finite")
     if names == tuple(CONTROL_INDEX):
         return np.asarray(stored, np.float64)
     asked = np.full((frames, len(CONTROLS)), np.nan)
@@ -173,7 +172,7 @@ def _read_asked(blob: object, names: tuple[str, ...], frames: int, budget: Budge
 
 def _read_marks(database: sqlite3.Connection, verdict: str, length: int, budget: Budget) -> Marks:
     def rows(columns: str, table: str) -> list[Any]:
-        return database.execute(f"SELECT {columns} FROM {table} ORDER BY place").fetchall()
+        return database.execute(f"SELECT {columns} FROM {table} ORDER BY place LIMIT {MAX_MARKS + 1}").fetchall()
 
     marks = Marks(
         spans=tuple(Span(*row) for row in rows("start, stop, region, kind", "spans")),
@@ -185,44 +184,8 @@ def _read_marks(database: sqlite3.Connection, verdict: str, length: int, budget:
         media=tuple(Media(*row) for row in rows("kind, path, sha256, offset_s", "media")),
         verdict=verdict,
     )
-    _require_sound(marks, length)
+    require_marks(marks, length)
     return marks
-
-
-def _require_sound(marks: Marks, length: int) -> None:
-    try:
-        spans = all(0 <= span.start < span.stop <= length for span in marks.spans)
-        pins = all(0 <= pin.start <= pin.frame < pin.stop <= length and _is_pose(pin.weights) for pin in marks.pins)
-        notes = all(0 <= note.frame < length for note in marks.notes)
-        media = all(bool(np.isfinite(entry.offset_s)) for entry in marks.media)
-    except TypeError as error:
-        raise DamagedError("a mark is not what it should be") from error
-    _require(spans, "a span is not within the take")
-    _require(pins, "a pin is not within the take, or holds no pose")
-    _require(notes, "a note is not within the take")
-    _require(media, "an offset is not a finite number")
-    frames = [frame for span in marks.spans for frame in (span.start, span.stop)]
-    frames += [frame for pin in marks.pins for frame in (pin.frame, pin.start, pin.stop)]
-    frames += [note.frame for note in marks.notes]
-    _require(all(isinstance(frame, int) for frame in frames), "a mark is not what it should be")
-    texts = [text for span in marks.spans for text in (span.region, span.kind)]
-    texts += [text for note in marks.notes for text in (note.author, note.time, note.text)]
-    texts += [text for entry in marks.media for text in (entry.kind, entry.path, entry.sha256)]
-    _require(all(isinstance(text, str) for text in (*texts, marks.verdict)), "a mark is not what it should be")
-
-
-def _require_said(edits: tuple[Edit, ...]) -> None:
-    """Check that each step on the visemes fits the lane that it finds."""
-    try:
-        said(edits)
-    except (KeyError, TypeError, ValueError) as error:
-        raise DamagedError("an edit does not say what it did to the visemes") from error
-
-
-def _is_pose(pose: object) -> bool:
-    if not isinstance(pose, dict) or not set(pose) <= set(SHAPE_INDEX):
-        return False
-    return all(isinstance(value, float | int) and abs(value) < MAX_WEIGHT for value in pose.values())
 
 
 def _marks_in(inputs: dict[str, Any], name: str) -> Marks:
@@ -236,14 +199,14 @@ def _require_readings(inputs: dict[str, Any]) -> None:
     try:
         for which in ("before", "after"):
             read_as_of(inputs[which])
-    except (KeyError, TypeError, EngineError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError, EngineError) as error:
         raise DamagedError("an edit does not say how the take is read") from error
 
 
 def _texts(text: str, budget: Budget) -> tuple[str, ...]:
     names = _json(text, budget)
-    _require(isinstance(names, list) and all(isinstance(name, str) for name in names), "a list of names is damaged")
-    _require(len(names) <= MAX_COLUMNS, "a list of names is too long")
+    require(isinstance(names, list) and all(isinstance(name, str) for name in names), "a list of names is damaged")
+    require(len(names) <= MAX_COLUMNS, "a list of names is too long")
     return tuple(names)
 
 
@@ -251,20 +214,15 @@ def _json(text: str, budget: Budget) -> Any:
     budget.take(JSON_BYTES * len(text))
     try:
         return json.loads(text)
-    except (ValueError, RecursionError) as error:
+    except (ValueError, RecursionError, MemoryError) as error:
         raise DamagedError("a setting cannot be read") from error
 
 
 def one(database: sqlite3.Connection, query: str) -> Any:
     """Return the one row of a query; raises `DamagedError` when there is none."""
     row = database.execute(query).fetchone()
-    _require(row is not None, "a part of it is missing")
+    require(row is not None, "a part of it is missing")
     return row
-
-
-def _require(sound: bool, what: str) -> None:
-    if not sound:
-        raise DamagedError(what)
 
 
 def _plain(value: object) -> object:

@@ -12,7 +12,7 @@ from pathlib import Path
 from engine.errors import EngineError, FormatError
 from engine.formats.atomic import replacement, sweep, unwritten
 from engine.formats.content import require_file
-from engine.project import rows, schema, spares
+from engine.project import held, rows, schema, spares
 from engine.project.blobs import Budget
 from engine.project.claim import JOURNALS, Claim, belongs, head_of, is_hot
 from engine.project.database import BESIDE, connect, copied, keep_safe, scrap, sentences, settle
@@ -32,12 +32,13 @@ class Project:
     cut, and a copy of the file alone holds every step. A file that another one took the place of is never written.
     """
 
-    def __init__(self, path: Path, contents: Contents, held: tuple[sqlite3.Connection, Claim] | None = None) -> None:
+    def __init__(self, path: Path, contents: Contents, own: tuple[sqlite3.Connection, Claim] | None = None) -> None:
         self.path = path
         self._contents = contents
-        self._database = held[0] if held else None
-        self._claim = held[1] if held else None
+        self._database = own[0] if own else None
+        self._claim = own[1] if own else None
         self._spare: Path | None = None
+        self._held = held.hold(path) if self._database is not None else None
 
     @classmethod
     def open(cls, path: Path, *, read_only: bool = False) -> Project:
@@ -134,6 +135,7 @@ class Project:
         self._database = self._claim = None
         if self._spare is not None:
             spares.drop(self._spare)
+        held.let_go(self._held)
 
     def _writable(self) -> tuple[sqlite3.Connection, Claim]:
         if self._database is None or self._claim is None:
@@ -292,8 +294,8 @@ def _read(database: sqlite3.Connection, path: Path) -> Contents:
     with sentences(path.name):
         schema.migrate(database, schema.check(database, path.name))
         log = path.with_name(f"{path.name}-wal")
-        held = path.stat().st_size + (log.stat().st_size if log.exists() else 0)
-        return rows.read_contents(database, Budget(held))
+        stored = path.stat().st_size + (log.stat().st_size if log.exists() else 0)
+        return rows.read_contents(database, Budget(stored))
 
 
 def _read_alone(copy: Path) -> Contents:

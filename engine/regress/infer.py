@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +12,7 @@ from torch import Tensor
 from torch.nn.functional import pad
 
 from engine.controls import CONTROLS
-from engine.models.checkpoint import MODELS, load_model
+from engine.models.checkpoint import MODELS, load_model, rebuilt
 from engine.regress import contacts
 from engine.regress.areas import AREAS, EXTENDED_AREAS, Area
 from engine.regress.network import ALIGNMENT, REACH, AreaNetwork, from_config
@@ -163,10 +163,9 @@ def load(folder: Path = MODELS) -> Regressor:
     """Read every area's networks; raises `AssetError` where one is missing or damaged."""
     networks = {}
     for area in (*AREAS, *EXTENDED_AREAS):
-        tensors, config = load_model(folder / f"regress_{area.name}.safetensors", kind="regress")
-        network = from_config(config)
-        network.load_state_dict(tensors)
-        networks[area.name] = network
+        path = folder / f"regress_{area.name}.safetensors"
+        tensors, config = load_model(path, kind="regress")
+        networks[area.name] = rebuilt(partial(from_config, config), tensors, path, kind="regress")
     return Regressor(networks)
 
 

@@ -2,62 +2,23 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from engine.errors import EditError
+from engine.speech.alphabets import ARPABET, CLASSES, IPA, class_anywhere
 from engine.take import Array
 
-# Class -> ARPAbet phones. The paper's Y stands with S and Z; here it stands with the vowel that it is a glide of.
-CLASSES: dict[str, tuple[str, ...]] = {
-    "sil": ("SIL", "SP", "SPN", "PAU"),
-    "ao": ("AO", "OY"),
-    "aa": ("AA", "AE", "AY"),
-    "eh": ("EH", "EY"),
-    "iy": ("IH", "IY", "EE", "IX", "Y"),
-    "ow": ("OH", "OW"),
-    "ah": ("AH", "ER", "AX", "AXR"),
-    "uw": ("UW", "AW", "UH"),
-    "jh": ("JH",),
-    "kg": ("G", "K", "HH", "H", "NG"),
-    "tn": ("L", "N", "T", "D", "DX", "EL", "EN"),
-    "sz": ("S", "Z"),
-    "sh": ("SH", "CH", "ZH"),
-    "th": ("TH", "DH"),
-    "fv": ("F", "V"),
-    "mbp": ("M", "B", "P", "EM"),
-    "w": ("W", "WH"),
-    "r": ("R",),
-}
+__all__ = ["CLASSES", "INDEX", "NAMES", "Cue", "begun_at", "class_of", "classes_over", "one_hot", "require_time"]
+
 NAMES: tuple[str, ...] = tuple(CLASSES)
-# Aligners that write IPA, as far as its symbols are not ARPAbet letters already.
-FARTHEST_S = 3e7
-_IPA = {
-    "sil": " spn ∅",
-    "ao": "ɔ ɔj ɔɪ ɒ",
-    "aa": "a ɑ æ aj aɪ ɐ",
-    "eh": "ɛ e ej eɪ",
-    "iy": "i ɪ j ɨ",
-    "ow": "o ow oʊ əʊ əw",
-    "ah": "ə ʌ ɜ ɝ ɚ",
-    "uw": "u ʊ ʉ aw aʊ",
-    "jh": "dʒ ɟ",
-    "kg": "ɡ g c ŋ ɲ ç x q",
-    "tn": "ɾ t̪ d̪ ɫ ʎ l n t d",
-    "sh": "ʃ tʃ ʒ",
-    "th": "θ ð",
-    "r": "ɹ ʁ",
-}
-_STRESS = re.compile(r"(?<=[^\W\d])[012ːˑ]+$")  # ARPAbet writes stress behind a vowel, IPA length
 INDEX: dict[str, int] = {
+    **{label.lower(): NAMES.index(name) for label, name in (*IPA.items(), *ARPABET.items())},
     **{name: index for index, name in enumerate(NAMES)},
-    **{label: NAMES.index(name) for name, labels in _IPA.items() for label in labels.split()},
-    **{phone.lower(): NAMES.index(name) for name, phones in CLASSES.items() for phone in phones},
-    "": 0,
 }
+FARTHEST_S = 3e7
 
 
 @dataclass(frozen=True)
@@ -74,13 +35,13 @@ def class_of(label: str) -> int:
 
     Raises `EditError` for a label that is none of these.
     """
-    plain = _STRESS.sub("", label.strip().lower())
-    if plain not in INDEX:
+    name = class_anywhere(label)
+    if name is None:
         raise EditError(
             f"There is no viseme or phone called {label.strip()[:40]!r}.",
             f"Use ARPAbet phones, such as M or AA1, or one of: {', '.join(NAMES)}.",
         )
-    return INDEX[plain]
+    return NAMES.index(name)
 
 
 def require_time(offset_s: float) -> None:

@@ -15,6 +15,7 @@ from pytestqt.qtbot import QtBot
 from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
 from engine.take import SHAPES, Take
+from tests.conftest import ROOT
 from tests.journeys.conftest import settled
 
 LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
@@ -59,6 +60,38 @@ def test_dropped_files_that_are_none_leave_a_sentence_and_the_take(
             qtbot.waitUntil(window.notices.isVisible, timeout=10_000)
             assert path.name in window.notices.text.text()
             assert window.session.original is before
+
+
+CASES = ROOT.parent / "shared" / "cases" / "hostile"
+HOSTILE = {
+    "cue.json": b'{"mouthCues": [{"start": 1' + b"0" * 300 + b', "end": 2, "value": "A"}]}',
+    "brackets.TextGrid": b'"ooTextFile" "TextGrid" ' + b"[" * 40_000,
+    "columns.csv": b"Timecode,BlendShapeCount," + b",".join(b"x%d" % n for n in range(900)) + b"\n" + b"0,0\n" * 60_000,
+    "deep.json": b"[" * 100_000,
+    "none.retake": b"SQLite format 3\0" + bytes(4000),
+    "none.npz": b"PK\x03\x04" + bytes(400),
+    "none.mp4": b"\0\0\0\x18ftypmp42" + bytes(400),
+    "none.wav": b"RIFF\xff\xff\xff\xffWAVEfmt " + b"\xff" * 400,
+    "none.c3d": b"\x02\x50" + b"\xff" * 1500,
+}
+
+
+COLLECTED = sorted(
+    path.name for path in CASES.glob("MIN_*") if "html" not in path.name
+)  # text as markup is tried elsewhere
+
+
+@pytest.mark.parametrize("name", [*HOSTILE, *COLLECTED])
+def test_a_file_made_to_harm_leaves_a_sentence_and_the_window(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, name: str
+) -> None:
+    before, path = window.session.original, tmp_path / name
+    path.write_bytes(HOSTILE[name] if name in HOSTILE else (CASES / name).read_bytes())
+    window.notices.hide()
+    drop(window, path)
+    qtbot.waitUntil(window.notices.isVisible, timeout=20_000)
+    assert len(window.notices.text.text()) <= 310 and window.session.original is before
+    settled(qtbot, window)
 
 
 @pytest.mark.parametrize("frames", [1, 2])

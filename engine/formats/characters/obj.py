@@ -10,7 +10,7 @@ import numpy.typing as npt
 from engine.errors import FormatError
 from engine.formats.budget import BUDGET
 from engine.formats.characters.names import match_names, plain
-from engine.formats.characters.raw import MAX_SHAPES, MAX_VERTICES, RawCharacter, check
+from engine.formats.characters.raw import FARTHEST, MAX_SHAPES, MAX_VERTICES, RawCharacter, check
 from engine.formats.content import content_of, unread
 from engine.take import Array
 from engine.words import counted
@@ -90,6 +90,8 @@ def _vertex(line: bytes, number: int, path: Path) -> tuple[float, float, float]:
         raise FormatError(f"{path.name} has a vertex without three numbers in line {number + 1}.") from None
     if not np.isfinite((x, y, z)).all():
         raise FormatError(f"{path.name} has a value that is not a finite number in line {number + 1}.")
+    if max(abs(x), abs(y), abs(z)) > FARTHEST:
+        raise FormatError(f"{path.name} has a vertex further away than a head can be in line {number + 1}.")
     return x, y, z
 
 

@@ -45,6 +45,9 @@ def welded(raw: RawCharacter) -> RawCharacter:
     )
 
 
+SMALLEST = 1e-12  # of a tolerance: nothing that is drawn is as small
+
+
 def _motion_keys(raw: RawCharacter, tolerance: float) -> Array:
     """Return two numbers for each vertex, (n, 2), that are equal where all its motions are, to within rounding.
 
@@ -54,7 +57,7 @@ def _motion_keys(raw: RawCharacter, tolerance: float) -> Array:
     rng = np.random.default_rng(0)
     for delta in raw.shapes.values():
         moving = np.flatnonzero(delta.any(axis=1))
-        rounded = np.round(delta[moving] / np.float32(tolerance)).astype(np.float64)
+        rounded = np.round(delta[moving].astype(np.float64) / max(tolerance, SMALLEST))
         keys[moving] += rounded @ rng.integers(1, 1 << 20, size=(3, 2)).astype(np.float64)  # whole numbers: exact
     return keys
 

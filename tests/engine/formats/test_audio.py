@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import errno
 from itertools import pairwise
 from pathlib import Path
 
@@ -170,3 +171,25 @@ def test_the_sound_of_a_film_is_read_in_step(tmp_path: Path) -> None:
 def test_a_silent_film_gives_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match="has no sound"):
         read(film(tmp_path / "a.mp4", [0, 33, 67]))
+
+
+def test_sound_that_no_decoder_here_knows_is_a_sentence(tmp_path: Path) -> None:
+    path = sound_only(tmp_path / "a.mkv")
+    content = path.read_bytes()
+    assert content.count(b"A_AAC") == 1
+    path.write_bytes(content.replace(b"A_AAC", b"A_ZZZ"))
+    with pytest.raises(FormatError, match="cannot be decoded here"):
+        audio.read(path)
+
+
+def test_no_room_for_the_samples_is_a_sentence(tmp_path: Path, monkeypatch) -> None:
+    """As under a limit on the size of files, or on a full disk."""
+    wave = tmp_path / "a.wav"
+    soundfile.write(wave, np.zeros(200_000, np.float32), 48_000)
+
+    def full(*_: object) -> int:
+        raise OSError(errno.EFBIG, "File too large")
+
+    monkeypatch.setattr("tempfile.SpooledTemporaryFile.write", full)
+    with pytest.raises(FormatError, match="found no room, file too large"):
+        audio.read(wave)

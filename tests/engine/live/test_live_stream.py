@@ -142,3 +142,58 @@ def test_the_way_treats_the_same_take_alike_and_loses_its_share() -> None:
     assert [due for due, _ in order] == sorted(due for due, _ in order)
     assert [index for _, index in order] != sorted(index for _, index in order)
     assert schedule(TAKE, Network()) == [(index / 60.0, index) for index in range(len(TAKE))]
+
+
+def test_a_clock_that_leaps_with_each_packet_declares_no_more_than_time_that_passed() -> None:
+    rig, tick, arrivals = Rig(), 0, 800
+    for number in range(arrivals):  # 2 s of packets, each a thousandth or nine seconds after the one before
+        tick += 9_000 if number % 2 else 1
+        rig.send(face(tick, numerator=1000, denominator=1), arrived_s=number / 400)
+    taken = rig.recorder.take()
+    assert len(taken) <= 1000 * (2 + 10) + arrivals  # unbounded it would be 3.6 million frames of a kilobyte each
+    assert len(rig.recorder) == arrivals and int((~taken.lost).sum()) >= arrivals / 2
+
+
+def test_slow_rates_among_fast_ones_cannot_fill_the_memory() -> None:
+    recorder = Recorder()
+    times_s = np.cumsum(np.where(np.arange(3000) % 3, 0.001, 9.0))
+    for time_s in times_s:
+        recorder.add(Arrival(float(time_s), 1000.0, WEIGHTS[0], np.zeros(9, np.float32), False))
+    taken = recorder.take()
+    assert len(taken) < 200_000 and "shortened" in taken.notices[0]
+    assert int((~taken.lost).sum()) == 3000  # no face is dropped for it
+
+
+def test_a_recording_with_ordinary_pauses_keeps_them() -> None:
+    recorder = Recorder()
+    times_s = np.concatenate([np.arange(100) / 60, 9.0 + np.arange(100) / 60])
+    for time_s in times_s:
+        recorder.add(Arrival(float(time_s), 60.0, WEIGHTS[0], np.zeros(9, np.float32), False))
+    assert len(recorder.take()) == round((9.0 + 99 / 60) * 60) + 1 and not recorder.take().notices
+
+
+def test_invented_names_do_not_keep_a_phone_out() -> None:
+    rig = Rig()
+    for index in range(MAX_SUBJECTS):
+        rig.send(face(index, subject=f"squatter {index}"))
+    for index in range(200):  # one packet of the phone among five with new names
+        rig.send(face(index, subject="phone"), arrived_s=index / 60)
+        for other in range(5):
+            rig.send(face(index, subject=f"invented {index} {other}"), arrived_s=index / 60)
+    assert "phone" in rig.stream.subjects and len(rig.stream.subjects) == MAX_SUBJECTS
+    assert rig.stream.subject == "squatter 0"
+
+
+def test_a_face_that_falls_silent_gives_way_unless_it_was_chosen_or_is_recorded() -> None:
+    stream = Stream(cleaner=CLEANER)
+
+    def send(subject: str, arrived_s: float) -> LiveFrame | None:
+        return stream.receive(face(round(60 * arrived_s), subject=subject), arrived_s, lambda: arrived_s)
+
+    assert send("squatter", 0.0) and send("phone", 5.0) is None
+    frame = send("phone", 10.5)
+    assert frame is not None and frame.subject == "phone" and stream.subject == "phone"
+    stream.choose("Bob")
+    assert send("phone", 10.6) is None and send("phone", 30.0) is None and stream.subject == "Bob"
+    recorded = Rig()
+    assert recorded.send(face(0, subject="Ana")) and recorded.send(face(1, subject="Bob"), 99.0) is None

@@ -54,3 +54,25 @@ def test_media_paths_that_are_no_paths_are_missing(tmp_path: Path, place: str) -
     os.mkfifo(tmp_path / "pipe.wav")
     for path in (place, "pipe.wav"):
         assert project.find(Media("audio", path, "00"), tmp_path).path is None
+
+
+def locks_held() -> int:
+    """Return how many locks on files this process holds, as the system tells."""
+    return Path("/proc/locks").read_text().count(f" {os.getpid()} ")
+
+
+@pytest.mark.skipif(not Path("/proc/locks").exists(), reason="the system does not tell its locks")
+def test_a_project_named_as_sound_is_refused_and_keeps_its_locks(tmp_path: Path, random_take) -> None:
+    opened = project.create(tmp_path / "a.retake", project.Contents(random_take))
+    os.link(opened.path, tmp_path / "a.wav")
+    before = locks_held()
+    assert before > 0
+    for name in ("a.retake", "a.wav"):
+        with pytest.raises(FormatError, match="is a project"):
+            project.attach(tmp_path / name, tmp_path, kind="audio")
+        assert project.find(Media("audio", name, "00"), tmp_path).path is None
+    assert locks_held() == before
+    opened.close()
+    with pytest.raises(FormatError):
+        project.attach(tmp_path / "a.retake", tmp_path, kind="audio")
+    assert project.attach(tmp_path / "a.wav", tmp_path, kind="audio").path == "a.wav"  # nobody has it open any more
