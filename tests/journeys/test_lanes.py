@@ -125,7 +125,8 @@ def test_weights_that_were_put_away_are_drawn_as_they_are_by_now(qtbot: QtBot, w
         weights = session.take.weights[start : start + 8].copy()
         weights[:, column] = 0.77
         controls, asked = session.controls[start : start + 8], session.asked[start : start + 8]
-        session.replace_rows(start, weights, controls, asked)
+        lost = session.take.lost[start : start + len(weights)]
+        session.replace_rows(start, weights, controls, asked, lost)
     session.expand(EYES[0])
     lowest, highest = window.curves.lane(key)._curves[1]._kept()
     blocks = session.curve(key)[:320].reshape(-1, 8)

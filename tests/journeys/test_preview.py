@@ -57,7 +57,7 @@ def test_holding_b_draws_no_coarse_picture_and_nothing_twice(qtbot: QtBot, windo
     session.move_playhead(30)
     weights = session.take.weights[:1].copy()
     weights[:] = 0.4
-    session.replace_rows(session.playhead, weights, session.controls[:1], session.asked[:1])
+    session.replace_rows(session.playhead, weights, session.controls[:1], session.asked[:1], session.take.lost[:1])
     settled(qtbot, window)
     preview._spent_ms = preview._quick_ms = 1e3  # as on a slow machine, where what moves is drawn in blocks
     shown: list[tuple[int, str]] = []
