@@ -20,9 +20,9 @@ from engine.formats.unfinished import UNFINISHED
 from engine.live.spool import recovered
 from engine.project import Contents
 from engine.take import timecode
+from engine.words import counted
 
 log = logging.getLogger(__name__)
-from engine.words import counted
 
 
 def unsaved_folder() -> Path:
