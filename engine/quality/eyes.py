@@ -41,9 +41,11 @@ def unclosed(seen: Seen, low: int, high: int) -> Iterator[Flag]:
 
 
 def _level(seen: Seen, frames: Indices) -> Mask:
-    """Return at which of some frames the gaze is not down."""
-    down = np.max([seen.weights[frames, shape] for shape in _DOWN.values()], axis=0)
-    return np.asarray(down <= _T.glance)
+    """Return at which of some frames the gaze is not lower than before or after the blink."""
+    down = np.max([seen.weights[:, shape] for shape in _DOWN.values()], axis=0)
+    within = seen.frames(_T.blink_within_s)
+    beside = np.minimum(down[np.maximum(frames - within, 0)], down[np.minimum(frames + within, seen.length - 1)])
+    return np.asarray(down[frames] - beside <= _T.glance)
 
 
 def _shut_before(seen: Seen) -> list[int]:
@@ -91,7 +93,7 @@ def unblinking(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield stretches without a blink that are longer than people leave; eyes that are not animated have none."""
     if not (seen.weights[:, list(_BLINK.values())] > LEASTLIDS).any():
         return
-    marks = np.flatnonzero((seen.blinks[1] > _T.any_blink_mm) | seen.lost)  # a blink may hide where there is no face
+    marks = np.flatnonzero((seen.blinks[1] > _T.blink_drop_mm) | seen.lost)  # a blink may hide where there is no face
     edges = np.concatenate([[-1], marks, [seen.length]])
     longest = np.flatnonzero(np.diff(edges) - 1 > _T.unblinking_s * seen.fps)
     for start, stop in zip((edges[longest] + 1).tolist(), edges[longest + 1].tolist(), strict=True):

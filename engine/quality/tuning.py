@@ -45,17 +45,18 @@ class Tuning:
     above_jaw: float = 0.08  # weight of mouthClose beyond jawOpen [.03 .. .12]; false 11 -> 0
     full_above_jaw: float = 0.5
     # A blink is a lid that falls and rises, each by `blink_drop_mm` within `blink_within_s`.
-    blink_drop_mm: float = 3.5  # mm [2 .. 4]; false 4 -> 1, 28 of 40
+    blink_drop_mm: float = 2.0  # mm [2 .. 4]; unclosed 36 of 40, at 3.5 28; false 3, at 3.5 1
     blink_within_s: float = 0.2  # seconds
-    unclosed_mm: float = 3.0  # mm between the lids at the bottom [2.5 .. 4]; 28 of 40, at 4 24
-    unlike_mm: float = 2.5  # mm more than at the bottom of the take's middle blink [1.5 .. 3.5]; false 8 -> 4
+    unclosed_mm: float = 3.0  # mm between the lids at the bottom [2.5 .. 4]; 36 of 40, at 3.5 34
+    unlike_mm: float = 3.0  # mm more than at the bottom of the middle blink [1.5 .. 3]; false 7 -> 2, 35 of 40 (36)
     shut_mm: float = 1.5  # mm; lids that come nearer are shut
-    glance: float = 0.3  # weight of eyeLookDown above which lids fall with the gaze [.2 .. .4]
+    glance: float = (
+        0.2  # weight of eyeLookDown beyond that before or after: lids fall with the gaze [.05 .. .5]; false 4 -> 3
+    )
     full_unclosed_mm: float = 6.0
     late_s: float = 0.06  # seconds between the bottoms of a blink's two lids [.03 .. .09]; 40 of 40, at .09 38
     together_s: float = 0.35  # seconds; bottoms farther apart are two blinks
     full_late_s: float = 0.2
-    any_blink_mm: float = 2.0  # mm that a lid falls and rises in what may be a blink, as a weak tracker reports it
     unblinking_s: float = 20.0  # seconds without a blink [15 .. 25]; no false one, the longest recorded is 12 s
     full_unblinking_s: float = 60.0
     both: float = 0.5  # weight of two excluding shapes [.4 .. .7]; false 6 -> 3, at .6 only 23 of 40
