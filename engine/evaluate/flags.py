@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from scipy.stats import binomtest
+from scipy.stats import binomtest, chi2
 
 from engine.controls import measure
 from engine.corpus import TEST, data_folder, load_takes
@@ -157,19 +157,27 @@ def _share(name: str, part: int, whole: int) -> Row:
 
 
 def _unplanted(sources: list[Source]) -> list[Row]:
+    """Return the flags of each take as it was recorded, and of all with the 95 % interval of a Poisson rate."""
     rows: list[Row] = []
     for source in sources:
         seen = replace(_cut(source, 0, len(source.take)), sound=source.sound)
-        counts = Counter(flag.kind for flag in flags_of(seen))
-        minutes = source.take.duration_s / 60
-        named = ", ".join(f"{kind} {count}" for kind, count in counts.most_common())
-        rows.append(
-            {
-                "take": source.name,
-                "minutes": round(minutes, 2),
-                "flags": counts.total(),
-                "flags_per_min": counts.total() / minutes,
-                "kinds": named,
-            }
-        )
+        rows.append(_rate(source.name, Counter(flag.kind for flag in flags_of(seen)), source.take.duration_s / 60))
+    if rows:
+        kinds = sum((row.pop("counts") for row in rows), Counter[str]())
+        rows.append(_rate("all", kinds, sum(row["minutes"] for row in rows)))
+        rows[-1].pop("counts")
     return rows
+
+
+def _rate(name: str, counts: Counter[str], minutes: float) -> Row:
+    total = counts.total()
+    return {
+        "take": name,
+        "minutes": round(minutes, 2),
+        "flags": total,
+        "flags_per_min": total / minutes,
+        "flags_per_min_low": float(chi2.ppf(0.025, 2 * total) / 2 / minutes) if total else 0.0,
+        "flags_per_min_high": float(chi2.ppf(0.975, 2 * total + 2) / 2 / minutes),
+        "kinds": ", ".join(f"{kind} {count}" for kind, count in counts.most_common()),
+        "counts": counts,
+    }

@@ -58,3 +58,14 @@ def test_a_flag_is_found_right_or_wrong_by_where_it_lies(monkeypatch: pytest.Mon
     assert (spike["planted"], spike["found"], spike["right"], spike["wrong"]) == (1, 1, 1, 1)
     assert (pop["planted"], pop["right"], pop["wrong"], pop["recall"]) == (0, 0, 0, None)
     assert spike["precision"] == 0.5 and 0 < spike["precision_low"] < 0.5 < spike["precision_high"] < 1
+
+
+def test_takes_without_plants_tell_false_flags_a_minute() -> None:
+    clean, spoilt = source(), source()
+    weights = spoilt.take.weights.copy()
+    weights[1000, 17] += 2.0
+    spoilt = flags.Source("spoilt", spoilt.take.with_weights(weights), spoilt.rotations, spoilt.sound)
+    first, second, both = flags._unplanted([clean, spoilt])
+    assert second["flags"] > first["flags"] and both["flags"] == first["flags"] + second["flags"]
+    assert both["flags_per_min_low"] < both["flags_per_min"] < both["flags_per_min_high"]
+    assert "range 1" in second["kinds"] and "counts" not in both
