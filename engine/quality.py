@@ -13,8 +13,9 @@ from functools import cached_property
 import numpy as np
 
 from engine.anatomy import BOTH, EXCLUSIVE, Indices, clash
-from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer
+from engine.controls import ALL_CONTROLS, CONTROL_INDEX
 from engine.errors import EditError
+from engine.extended import bundled_face
 from engine.speech.lane import VisemeLane
 from engine.speech.visemes import NAMES
 from engine.take import Array, Mask, Take, runs
@@ -60,11 +61,11 @@ class Seen:
     Attributes
     ----------
     weights : (frames, 52)
-    controls : (frames, 8) mm, measured on the weights
+    controls : (frames, 16), measured on the weights
     fps : frames per second
     lost : (frames,) bool, where the tracker had no face and nobody has filled one in since
-    asked : (frames, 8) mm, NaN where nothing was asked; None where nothing was anywhere
-    original_controls : (frames, 8) mm before any edit; None without one
+    asked : (frames, 16), NaN where nothing was asked; None where nothing was anywhere
+    original_controls : (frames, 16) before any edit; None without one
     visemes : what is said when
     """
 
@@ -94,19 +95,19 @@ def seen_of(
 
     Parameters
     ----------
-    asked : (frames, 8) mm, NaN where nothing was asked
-    controls : of the take and of the original, (frames, 8) mm each, where they have been measured
+    asked : (frames, 16), NaN where nothing was asked
+    controls : of the take and of the original, (frames, 16) each, where they have been measured
 
     Raises `EditError` for an original of another length.
     """
     if original is None:
-        measured = bundled_measurer().measure(take.weights) if controls is None else controls[0]
+        measured = bundled_face().measure(take.weights) if controls is None else controls[0]
         return Seen(take.weights, measured, take.fps, take.lost, asked, None, visemes)
     if len(original) != len(take):
         raise EditError(
             f"The original has {len(original)} frames, the take {len(take)}.", "Name the take that was edited."
         )
-    measure = bundled_measurer().measure
+    measure = bundled_face().measure
     now, before = controls if controls is not None else (measure(take.weights), measure(original.weights))
     lost = still_lost(take.weights, original.weights, take.lost)
     return Seen(take.weights, now, take.fps, lost, asked, before, visemes)
@@ -222,9 +223,10 @@ def _missed(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     for column in np.flatnonzero((by_mm > MISSED_MM).any(axis=0)):
         for start, stop in runs(by_mm[:, column] > MISSED_MM):
             worst = start + int(np.argmax(by_mm[start:stop, column]))
+            control = ALL_CONTROLS[column]
             text = (
-                f"{CONTROLS[column].title.capitalize()}: {asked[worst, column]:.1f} mm was asked for, "
-                f"a plausible face gets to {reached[worst, column]:.1f} mm."
+                f"{control.title.capitalize()}: {asked[worst, column]:.1f} {control.unit} was asked for, "
+                f"a plausible face gets to {reached[worst, column]:.1f} {control.unit}."
             )
             share = (by_mm[worst, column] - MISSED_MM) / (FULL_MISS_MM - MISSED_MM)
             yield Flag("missed", low + start, low + stop, _weight(share), text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from engine.controls import bundled_measurer
+from engine.extended import bundled_face
 from engine.easing import ease
 from engine.editing import Patch
 from engine.errors import EditError
@@ -17,7 +17,7 @@ ORDER = 2  # filtered once in each direction, so the slope is that of order 4 an
 
 def _patch(take: Take, start: int, weights: Array) -> Patch:
     """Return a patch whose asked curves are what the face does: nothing was asked of the controls."""
-    reached = bundled_measurer().measure(weights)
+    reached = bundled_face().measure(weights)
     return Patch(start, weights, reached, reached)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.project.records import VISEMES, Contents, Edit
 from engine.project.visemes import VisemeChange, change_of
 from engine.speech.lane import VisemeLane
@@ -21,8 +21,8 @@ class Replayed:
     Attributes
     ----------
     take : with the edits up to the position
-    asked : (frames, 8) mm, NaN where nothing was asked
-    before : of each edit the (frames, 52) weights and (frames, 8) asked values that it found
+    asked : (frames, 16), NaN where nothing was asked
+    before : of each edit the (frames, 52) weights and (frames, 16) asked values that it found
     visemes : the lane in effect, if there is one
     changes : of each edit what it did to that lane, None where it did nothing
     """
@@ -37,7 +37,7 @@ class Replayed:
 def replay(contents: Contents) -> Replayed:
     """Return the state at the project's position, bit for bit as it was left."""
     weights = contents.original.weights.copy()
-    asked = np.full((len(weights), len(CONTROLS)), np.nan)
+    asked = np.full((len(weights), len(ALL_CONTROLS)), np.nan)
     before: list[tuple[Array, Array]] = []
     shown = (weights.copy(), asked.copy())
     for index, edit in enumerate(contents.edits):
