@@ -31,13 +31,16 @@ class Patch:
     ----------
     start : first frame
     weights : (frames, 52)
-    asked, reached : (frames, 16) control curves: what was asked for, and what the new face does
+    asked : (frames, 16) control curves that were asked for, NaN where nothing was
+    reached : (frames, 16) what the new face does
+    granted : (frames, 16) what was asked as far as it is believable; None where nobody asked for a curve
     """
 
     start: int
     weights: Array
     asked: Array
     reached: Array
+    granted: Array | None = None
 
     @property
     def stop(self) -> int:
@@ -51,7 +54,7 @@ class Patch:
         if before.weights.shape != after.weights.shape:
             raise EditError(f"The new weights have {len(after)} frames, the take {len(before)}.")
         reached = bundled_face().measure(rows)
-        return cls(frames[0], rows, reached, reached)
+        return cls(frames[0], rows, np.full_like(reached, np.nan), reached)
 
     def apply(self, take: Take) -> Take:
         """Return the take with these weights in place."""
@@ -141,15 +144,14 @@ class Dragger:
         stretches = self._solver.stretches(start, wish)
         first = min([start, *(each.start for each in stretches)])
         last = max([stop, *(each.stop for each in stretches)])
-        weights, wanted = self.take.weights[first:last].copy(), self.controls[first:last].copy()
-        reached = wanted.copy()
+        weights, reached = self.take.weights[first:last].copy(), self.controls[first:last].copy()
+        wanted, granted = np.full_like(reached, np.nan), np.full_like(reached, np.nan)
         for each in stretches:
             rows = slice(each.start - first, each.stop - first)
-            weights[rows], _ = self._solver.solve(each, believability=believability, held=self._held(each))
+            weights[rows], granted[rows] = self._solver.solve(each, believability=believability, held=self._held(each))
             reached[rows] = bundled_face().measure(weights[rows])
-        rows = slice(start - first, stop - first)
-        wanted[rows] = np.where(np.isnan(wish), wanted[rows], wish)
-        return Patch(first, weights, wanted, reached)
+            wanted[rows] = each.asked
+        return Patch(first, weights, wanted, reached, granted)
 
     def _held(self, stretch: Stretch) -> Mask | None:
         return None if self._asked is None else ~np.isnan(self._asked[stretch.start : stretch.stop])

@@ -45,7 +45,10 @@ class FaceMeasurer:
         inner = _most_moved(deltas, "browInnerUp")
         mirrored = int(character.mirror[inner]) if len(character.mirror) else inner
         raised = [_most_moved(deltas, name) for name in ("browOuterUpRight", "browOuterUpLeft")]
-        chin, corners = character.landmarks["chin"], [character.landmarks[f"mouth_{side}"] for side in ("right", "left")]
+        chin, corners = (
+            character.landmarks["chin"],
+            [character.landmarks[f"mouth_{side}"] for side in ("right", "left")],
+        )
         vertices = [*raised, inner, mirrored, chin, eyes["Right"][1], eyes["Left"][1], *corners]
         middle = (right + left) / 2
         origins = np.array([right, left, middle, middle, rest[chin], right, left, *rest[corners]])

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from engine.extended import bundled_face
 from engine.easing import ease
 from engine.editing import Patch
 from engine.errors import EditError
+from engine.extended import bundled_face
 from engine.take import SHAPES, Array, Take
 
 LOWEST_HZ = 0.001
@@ -16,9 +16,9 @@ ORDER = 2  # filtered once in each direction, so the slope is that of order 4 an
 
 
 def _patch(take: Take, start: int, weights: Array) -> Patch:
-    """Return a patch whose asked curves are what the face does: nothing was asked of the controls."""
+    """Return a patch that asked nothing of the controls."""
     reached = bundled_face().measure(weights)
-    return Patch(start, weights, reached, reached)
+    return Patch(start, weights, np.full_like(reached, np.nan), reached)
 
 
 def replace_weight(take: Take, shape: int, start: int, curve: Array) -> Patch:

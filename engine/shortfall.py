@@ -43,16 +43,18 @@ class Shortfall:
         return f"{control.title} {self.reached:.1f} {control.unit} of {self.asked:.1f} asked: {self.why}"
 
 
-def shortfalls(weights: Array, asked: Array, *, believability: float) -> list[Shortfall]:
+def shortfalls(weights: Array, asked: Array, *, believability: float, granted: Array | None = None) -> list[Shortfall]:
     """Return each control that misses by more than `SHORT`, at its worst frame.
 
-    `weights` are (frames, 52), `asked` (frames, 16) with NaN where nothing is asked, `believability` that of the edit.
+    `weights` are (frames, 52), `asked` (frames, 16) with NaN where nothing is asked, `believability` that of the edit;
+    `granted`, (frames, 16), is what was believable of it, where that is known.
     """
     missing = np.nan_to_num(asked - bundled_face().measure(weights))
     found = []
     for column in np.flatnonzero(np.abs(missing).max(axis=0, initial=0.0) > SHORT).tolist():
         row = int(np.argmax(np.abs(missing[:, column])))
-        limits = _limits(weights[row : row + 1], column, missing[row, column])
+        met = granted is not None and abs(granted[row, column] - asked[row, column] + missing[row, column]) < SHORT / 5
+        limits = () if met else _limits(weights[row : row + 1], column, missing[row, column])
         others = [
             control.title
             for index, control in enumerate(ALL_CONTROLS)

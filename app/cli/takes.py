@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
 
 from app.cli.tables import show
@@ -74,9 +73,7 @@ def edit(
     reached = patch.reached[start - patch.start : stop - patch.start, column]
     unit = ALL_CONTROLS[column].unit
     typer.echo(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} {unit}")
-    asked = np.full_like(patch.asked, np.nan)
-    asked[:, column] = patch.asked[:, column]
-    for short in shortfalls(patch.weights, asked, believability=believability):
+    for short in shortfalls(patch.weights, patch.asked, believability=believability, granted=patch.granted):
         advice = "; --exact goes there all the same" if short.believed else ""
         typer.echo(f"frame {patch.start + short.row}: {short}{advice}")
     typer.echo(f"frames outside {patch.start}:{patch.stop} are as they were; wrote {out}")

@@ -10,7 +10,17 @@ from rich.console import Console
 
 from engine.errors import EngineError
 
-NETWORKS = ("regress", "regress_baselines", "regress_study", "clean", "expected", "inpaint", "motion", "controls", "prior")
+NETWORKS = (
+    "regress",
+    "regress_baselines",
+    "regress_study",
+    "clean",
+    "expected",
+    "inpaint",
+    "motion",
+    "controls",
+    "prior",
+)
 ELSEWHERE = {  # the others are engine.NAME.train
     "regress_baselines": "engine.evaluate.baselines.train",
     "regress_study": "engine.evaluate.study",

@@ -13,10 +13,15 @@ def falloff(frames: Array, centre: float, radius_frames: float) -> Array:
     return np.asarray(1 - away * away * (3 - 2 * away))
 
 
-def pulled(curve: Array, start: int, centre: int, *, by: float, radius_frames: int, strength: float) -> Array:
-    """Return rows of a curve, (n,) from frame `start`, pulled at `centre`; neither a distance nor a weight is below zero."""
+def pulled(
+    curve: Array, start: int, centre: int, *, by: float, radius_frames: int, strength: float, lowest: float = 0.0
+) -> Array:
+    """Return rows of a curve, (n,) from frame `start`, pulled at `centre`, nowhere below its lowest value.
+
+    A pull that would take the brush's middle below it is cut short, so that the brush keeps its form.
+    """
     frames = np.arange(start, start + len(curve), dtype=np.float64)
-    return np.asarray(np.maximum(0.0, curve + strength * by * falloff(frames, centre, radius_frames)))
+    return np.asarray(np.maximum(lowest, curve + strength * by * falloff(frames, centre, radius_frames)))
 
 
 def reach(centre: int, radius_frames: int, frames: int) -> tuple[int, int]:

@@ -132,6 +132,7 @@ class CurvesPanel(pg.GraphicsLayoutWidget):  # type: ignore[misc]
             lane.paint_with(self._colours)
             self.ci.addItem(lane.gutter, row, 0)
             self.ci.addItem(lane.view, row, 1)
+        self.ci.setGeometry(self.range)  # else they have no width until the panel's size changes
         self._take_curves()  # growing draws them already
         self.setMinimumHeight(MIN_LANE_PX * len(self.lanes))
 

@@ -10,8 +10,7 @@ from app.session import Change, Session
 from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
 from app.widgets.section import Section, quiet
-from engine.controls import bundled_measurer
-from engine.exact import shortfalls
+from engine.extended import bundled_face
 from engine.take import Array
 
 LEGEND = "Curves: grey as recorded, dashed as asked."
@@ -21,6 +20,7 @@ class FactsSection(Section):
     """What is asked and reached, and why not more; how much differs from the original."""
 
     again = Signal()
+    reach = Signal()
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "This edit")
@@ -33,6 +33,12 @@ class FactsSection(Section):
         )
         self.again_button.clicked.connect(self.again)
         self.column.addWidget(self.again_button)
+        self.reach_button = QPushButton("Reach it all the same")
+        self.reach_button.setToolTip(
+            "Make the last edit again with a believability of 0: it goes where it was dragged."
+        )
+        self.reach_button.clicked.connect(self.reach)
+        self.column.addWidget(self.reach_button)
         session.changed.connect(self._on_change)
         session.undo.indexChanged.connect(self._show)
         self._show()
@@ -43,12 +49,12 @@ class FactsSection(Section):
 
     def _show(self, *_: int) -> None:
         session, step = self.session, self._step()
-        modes = {"exact": session.exact, "follow": session.follow}
-        made = {name: step.edit.inputs.get(name) for name in modes} if step is not None else modes
-        self.again_button.setVisible(session.draft is None and made != modes)
-        told = self._told_of(step)
+        made = step.edit.inputs["believability"] if step is not None else session.believability
+        self.again_button.setVisible(session.draft is None and made != session.believability)
+        told, held_back = self._told_of(step)
         self.told.setText("\n".join(told))
         self.told.setVisible(bool(told))
+        self.reach_button.setVisible(session.draft is None and held_back)
         self.facts.setText(self._counts())
 
     def _step(self) -> EditCommand | None:
@@ -56,16 +62,16 @@ class FactsSection(Section):
         step = self.session.undo.command(self.session.undo.index() - 1)
         return step if isinstance(step, EditCommand) and step.asked is not None else None
 
-    def _told_of(self, step: EditCommand | None) -> list[str]:
-        session, draft = self.session, self.session.draft
+    def _told_of(self, step: EditCommand | None) -> tuple[list[str], bool]:
+        """Return what to say of the edit on screen, and whether believability alone keeps it from what was asked."""
+        draft = self.session.draft
         if draft is not None:
-            rows = slice(draft.start, draft.stop)
-            if draft.asked is draft.reached:
-                return []  # nothing was asked of a control
-            return _told(draft.weights, draft.asked, session.controls[rows], session.asked[rows], session.exact)
+            return _told(draft.start, draft.weights, draft.asked, draft.granted, self.session.believability)
         if step is None or step.asked is None:
-            return []
-        return _told(step.edit.weights, step.asked[1], *step.before, bool(step.edit.inputs.get("exact")))
+            return [], False
+        start, asked = step.asked
+        now = self.session.take.weights[start : start + len(asked)]
+        return _told(start, now, asked, step.granted, step.edit.inputs["believability"])
 
     def _counts(self) -> str:
         session, draft, frames = self.session, self.session.draft, len(self.session.take)
@@ -79,18 +85,26 @@ class FactsSection(Section):
         return f"{moved:,} of {frames:,} frames changed, the rest is as recorded, bit for bit.\n{LEGEND}"
 
 
-def _told(weights: Array, asked: Array, controls: Array, asked_before: Array, exact: bool) -> list[str]:
-    """Return a line for each control that an edit asked for: (n, 52) weights, (n, 8) mm asked and there before."""
-    changed = asked != controls
-    reached, everything = bundled_measurer().measure(weights), np.where(changed, asked, asked_before)
-    short = {
-        found.control: found
-        for found in shortfalls(weights, everything, bundled_measurer(), exact_curve=exact)
-        if changed[:, found.control].any()
-    }
+def _told(
+    start: int, weights: Array, asked: Array, granted: Array | None, believability: float
+) -> tuple[list[str], bool]:
+    """Return a line for each control that an edit asked for, and whether believability alone holds one of them back.
+
+    Weights, (n, 52), and asked values, (n, 16) with NaN, are from frame `start`.
+    """
+    # here and not above: torch takes a second to load, and the window should be seen first
+    from engine.shortfall import shortfalls
+
+    wanted = ~np.isnan(asked)
+    if not wanted.any():
+        return [], False
+    reached = bundled_face().measure(weights)
+    found = shortfalls(weights, asked, believability=believability, granted=granted)
+    short = {one.control: one for one in found}
     lines = []
-    for lane in np.flatnonzero(changed.any(axis=0)).tolist():
-        row = int(np.argmax(np.abs(asked[:, lane] - controls[:, lane])))
-        met = f"{CURVES[lane].title} {reached[row, lane]:.1f} mm of {asked[row, lane]:.1f} asked"
-        lines.append(str(short[lane]) if lane in short else met)
-    return lines
+    for lane in np.flatnonzero(wanted.any(axis=0)).tolist():
+        rows = np.flatnonzero(wanted[:, lane])
+        middle = rows[len(rows) // 2]
+        met = f"{CURVES[lane].title} {reached[middle, lane]:.1f} {CURVES[lane].unit}, as asked"
+        lines.append(f"{short[lane]} (frame {start + short[lane].row})" if lane in short else met)
+    return lines, any(one.believed for one in found)

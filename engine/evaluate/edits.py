@@ -15,11 +15,11 @@ from engine.character import bundled
 from engine.corpus import Piece, data_folder, split, whole_faces
 from engine.editing import Dragger, warm_up
 from engine.errors import EngineError
-from engine.extended import bundled_face
 from engine.evaluate.edits_catalogue import EASE_FRAMES, KINDS, SPEAKS_OF, Scripted, scripted
 from engine.evaluate.plausibility import STRETCH, Recorded, recorded
 from engine.evaluate.regress import pieces_to_measure
 from engine.evaluate.regress_edits import PARTS
+from engine.extended import bundled_face
 from engine.regress.plausibility import DEFAULT_BELIEVABILITY
 from engine.take import MODEL_FPS, Array, Take
 

@@ -11,7 +11,6 @@ import torch
 from scipy.spatial import cKDTree
 from torch import Tensor
 
-from engine.controls import bundled_measurer
 from engine.corpus import Piece, whole_faces
 from engine.extended import bundled_face
 from engine.models.windows import windows

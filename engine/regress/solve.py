@@ -51,7 +51,7 @@ _CORNERS = [
     for name in ("lips_horizontal", "corner_right", "corner_left", "corner_height_right", "corner_height_left")
 ]
 _UPRIGHT = [ALL_INDEX[name] for name in ("lips_vertical", "nose_to_lip", "chin_to_lip")]
-_SPLIT = [len(SHAPES), len(SHAPES) + len(ALL_CONTROLS)]
+_SIGNED = np.array([control.signed for control in ALL_CONTROLS])
 FADE_FROM = 0.1  # of the largest change asked; its place, unlike that of the first change, is the same at any rate
 ASKED_MM = 1e-7  # a departure from what is there that is one
 
@@ -65,7 +65,7 @@ class Tuning:
     stiffness : per mm^2, what moving the skin costs beside how rarely weights go together [0..1000]; 100 made edits of one
         lip, and one-sided ones, a third less unlike recorded motion than covariance alone
     feather_s : seconds beyond what is asked over which the face may still move [0..0.5]
-    smooth_s : standard deviation in seconds of the filter over the networks' change [0..0.05]; they answer a little
+    smooth_s : standard deviation in seconds of the filter over the networks' change [0..0.07]; they answer a little
         otherwise when frames fall otherwise: an edit at 24 and at 120 fps differs by 2 % with it, by 7 % without
     hold_s : seconds over which what is held comes and goes [.05..0.3]; held from one frame to the next, it leaves a notch
     touching_mm, apart_mm : lips nearer than the first stay as near while other curves of the mouth are asked for, lips
@@ -157,20 +157,26 @@ class Solver:
         target = np.where(wanted, goal, own)
         if not (np.abs(target - own) > ASKED_MM).any():
             return weights, goal
-        hold = self._hold(wanted, own, held)
+        moved = np.abs(np.nan_to_num(stretch.asked - own))
+        hold = self._hold(moved, wanted, own, held)
         step, frame = self.take.fps / MODEL_FPS, np.arange(len(weights))
-        size = np.abs(np.nan_to_num(stretch.asked - own) / (self._prior.high - self._prior.low)).sum(axis=1)
+        size = (moved / (self._prior.high - self._prior.low)).sum(axis=1)
         at, origin = _model_frames(size, step)
-        seen = (*np.split(_between(np.concatenate([weights, own, target], axis=1), at), _SPLIT, axis=1), interpolate(hold, at))
-        change = _between(self._proposed(*seen, origin=origin), np.clip((frame - at[0]) / step, 0, len(at) - 1))
-        change *= _fade(size, self.tuning.feather_s * self.take.fps)[:, None]
-        moved = np.clip(weights + change, np.minimum(weights, 0.0), np.maximum(weights, 1.0))
-        return self._projected(np.where(change != 0, moved, weights), target, hold), goal
+        face, pulled = np.split(_between(np.concatenate([weights, target - own], axis=1), at), [len(SHAPES)], axis=1)
+        change = _between(
+            self._proposed(face, pulled, interpolate(hold, at), origin=origin),
+            np.clip((frame - at[0]) / step, 0, len(at) - 1),
+        )
+        change *= _fade(size, feather=self.tuning.feather_s * self.take.fps)[:, None]
+        proposed = np.clip(weights + change, np.minimum(weights, 0.0), np.maximum(weights, 1.0))
+        return self._projected(np.where(change != 0, proposed, weights), target, hold), goal
 
-    def _hold(self, wanted: Mask, own: Array, held: Mask | None) -> Array:
+    def _hold(self, moved: Array, wanted: Mask, own: Array, held: Mask | None) -> Array:
         """Return how firmly each value, (frames, 16), is held, in 0..1: what is asked fully, beside it less and less."""
-        frames = self.tuning.hold_s * self.take.fps
-        hold = _beside(wanted, frames)
+        hold, frames = wanted.astype(float), self.tuning.hold_s * self.take.fps
+        for column in np.flatnonzero(wanted.any(axis=0) & moved.any(axis=0)).tolist():
+            beside = _fade(moved[:, column], margin=frames / 2, feather=frames)
+            hold[:, column] = np.maximum(hold[:, column], beside)
         if held is not None:
             hold = np.maximum(hold, _beside(held, frames))
         if wanted[:, _CORNERS].any() and not wanted[:, _UPRIGHT].any():
@@ -178,14 +184,17 @@ class Solver:
             hold[:, _LIPS] = np.maximum(hold[:, _LIPS], ease((self.tuning.apart_mm - own[:, _LIPS]) / span))
         return hold
 
-    def _proposed(self, weights: Array, own: Array, target: Array, hold: Array, *, origin: int) -> Array:
-        """Return the networks' change of weights, (frames, 52), at the model rate."""
+    def _proposed(self, weights: Array, pulled: Array, hold: Array, *, origin: int) -> Array:
+        """Return the networks' change of weights, (frames, 52), at the model rate, for controls `pulled` so far, (frames, 16)."""
+        own = self._measurer.measure(
+            weights
+        )  # and not between measured frames: these would ask for a change themselves
+        target = np.maximum(own + pulled, np.where(_SIGNED, -np.inf, 0.0))
         guess = self._projected(weights, target, hold)
-        curves = own + self._measurer.measure(guess) - self._measurer.measure(weights)  # the same where nothing moved
+        curves = self._measurer.measure(guess)
         curves = curves + hold * (target - curves)
-        areas = tuple(area for area in FREE if hold[:, _columns(area)].any())
-        if hold[:, _SIDEWAYS].any():
-            areas += ("jaw",)
+        areas = tuple(area for area in FREE if hold[:, _columns(area, but=_SIDEWAYS)].any())
+        areas += ("jaw",) if hold[:, _SIDEWAYS].any() else ()
         change = self._proposer.change(own, curves, areas, origin=origin)
         return np.asarray(gaussian_filter1d(change, self.tuning.smooth_s * MODEL_FPS, axis=0, mode="nearest"))
 
@@ -209,17 +218,18 @@ class Solver:
         rows = np.flatnonzero(part.any(axis=1))
         if not len(rows):
             return landed
-        # What is held in part is brought by that part from where it would go by itself.
+        # What is held in part is brought by that part from where it would go by itself; from the same face as what is held
+        # fully, so that one turns into the other.
         free = self._measurer.measure(landed[rows])[:, columns]
         wanted = free + hold[rows] * (target[rows] - free)
         landed[rows] = project(
-            landed[rows], wanted, columns, hold=hold[rows] > 0, covariance=covariance, measurer=self._measurer
+            weights[rows], wanted, columns, hold=hold[rows] > 0, covariance=covariance, measurer=self._measurer
         )
         return landed
 
 
-def _columns(area: str) -> npt.NDArray[np.int64]:
-    return np.array([index for index, control in enumerate(ALL_CONTROLS) if control.area == area])
+def _columns(area: str, *, but: int = -1) -> npt.NDArray[np.int64]:
+    return np.array([index for index, control in enumerate(ALL_CONTROLS) if control.area == area and index != but])
 
 
 def _model_frames(size: Array, step: float) -> tuple[Array, int]:
@@ -234,10 +244,10 @@ def _model_frames(size: Array, step: float) -> tuple[Array, int]:
     return middle + step * np.arange(-before, after + 1), before
 
 
-def _fade(size: Array, feather: float) -> Array:
-    """Return how much of the networks' change counts, (frames,): all of it where a tenth of what is asked is asked.
+def _fade(size: Array, *, feather: float, margin: float = 0.0) -> Array:
+    """Return 1 on frames where at least a tenth of what is asked most is asked, and beside them 1 to 0 over some frames.
 
-    `size`, (frames,), is how much is asked; beside, over `feather` frames, the change fades.
+    `size`, (frames,), is how much is asked; the fall takes `feather` frames and begins `margin` frames beside.
     """
     over = size - FADE_FROM * size.max()
     rows = np.flatnonzero(over >= 0)
@@ -247,12 +257,14 @@ def _fade(size: Array, feather: float) -> Array:
     if rows[-1] + 1 < len(size):
         last += over[rows[-1]] / (over[rows[-1]] - over[rows[-1] + 1])
     frame = np.arange(len(size))
-    return ease(1 - np.maximum(0.0, np.maximum(first - frame, frame - last)) / feather)
+    return ease(1 - np.maximum(0.0, np.maximum(first - frame, frame - last) - margin) / feather)
 
 
 def _beside(wanted: Mask, frames: float) -> Array:
     """Return how firmly values, (frames, n), are held that are asked for at some frames: fully there, beside less and less."""
-    away = np.stack([distance_transform_edt(~column) if column.any() else np.full(len(column), np.inf) for column in wanted.T])
+    away = np.stack(
+        [distance_transform_edt(~column) if column.any() else np.full(len(column), np.inf) for column in wanted.T]
+    )
     return ease(1 - away.T / frames)
 
 

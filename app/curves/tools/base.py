@@ -69,7 +69,7 @@ class Tool:
             self.panel.inference.run(replace)
             return
         asked = session.controls[start : start + len(curve)].copy()
-        asked[:, column] = curve.clip(min=0.0)
+        asked[:, column] = curve.clip(min=CURVES[lane].lowest)
         self.panel.inference.ask(start, asked)
 
     def done(self, verb: str, lane: int, at: QPointF) -> None:

@@ -60,12 +60,15 @@ class DragTool(Stroke):
         start, stop = reach(self._centre, session.radius_frames, len(session.take))
         curve = session.curve(self._lane)[start:stop]
         radius = session.radius_frames
-        bent = pulled(curve, start, self._centre, by=self._by, radius_frames=radius, strength=session.strength)
+        lowest = CURVES[self._lane].lowest
+        bent = pulled(
+            curve, start, self._centre, by=self._by, radius_frames=radius, strength=session.strength, lowest=lowest
+        )
         self.ask(self._lane, start, bent)
 
     def _hint(self, lane: int, frame: int, at: QPointF) -> None:
         session, shown, curve = self.panel.session, self.panel.lane(lane), CURVES[lane]
-        asked = max(0.0, float(session.curve(lane)[frame]) + session.strength * self._by)
+        asked = max(curve.lowest, float(session.curve(lane)[frame]) + session.strength * self._by)
         reached = session.value(lane, frame)
         self.panel.show_brush(shown, reach(frame, session.radius_frames, len(session.take)))
         self.panel.show_dot(shown, frame, reached)

@@ -54,7 +54,7 @@ class DrawTool(Stroke):
 
     def _point(self, lane: int, at: QPointF) -> tuple[int, float]:
         frame = int(np.clip(round(self.panel.frame_at(at)), 0, len(self.panel.session.take) - 1))
-        return frame, max(0.0, self.panel.lane(lane).value_at(self.panel.mapToScene(at.toPoint()).y()))
+        return frame, max(CURVES[lane].lowest, self.panel.lane(lane).value_at(self.panel.mapToScene(at.toPoint()).y()))
 
     def _asked(self, lane: int) -> tuple[int, Array]:
         """Return the sketch, with a few frames at either side that lead into it."""

@@ -114,7 +114,7 @@ class ScaleTool(Tool):
         if self._held == "value":
             box = self.panel.lane(self._lane).scene_box()
             factor = max(0.0, 1.0 + 2.0 * (self._pressed.y() - at.y()) / max(1.0, box.height()))
-            self.ask(self._lane, start, scaled_in_value(curve[start:stop], factor).clip(min=0.0))
+            self.ask(self._lane, start, scaled_in_value(curve[start:stop], factor))
             self.panel.show_readout(f"{CURVES[self._lane].title} × {factor:.2f}", at)
         else:
             new_stop = int(np.clip(round(self.panel.frame_at(at)) + 1, start + 2, len(curve)))
