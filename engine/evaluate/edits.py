@@ -1,4 +1,4 @@
-"""A hundred edits that a person would make: what was asked and reached, what else moved, and how like a face it is."""
+"""Edits that a person would make: what was asked and reached, what else moved, and how like a face it is."""
 
 from __future__ import annotations
 
@@ -81,7 +81,9 @@ def table(data: Path | None, report: Report) -> list[Row]:
     the edit's frames, `missed_peak_mm` the same where most was asked, `reached` which share of it was reached there.
     `beside_*` is what moved that the edit does not speak of: mean change of a weight, mean and largest move of a vertex.
     `step_mm` is the largest move of the surface from frame to frame where the edit comes and goes, `step_before_mm`
-    there before, `step_take_mm` anywhere within some seconds of it. `impossible` is the share of frames that hold a pair of shapes
+    there before, `step_take_mm` anywhere within some seconds of it. `notch_mm` is the furthest that the surface leaves the
+    middle of the frames beside at the asked frames, `notch_take_mm` what the take does so in one frame of a hundred.
+    `impossible` is the share of frames that hold a pair of shapes
     that exclude each other, less that before; `unlike_mm` how far the motion is from the nearest stretch of the training
     takes, `unlike_before_mm` how far it was (null where these are not at hand). `ms` is the mean time of a drag.
     """
@@ -168,7 +170,15 @@ def _steps(made: Made) -> Row:
         "step_mm": float(after[at_ends].max()),
         "step_before_mm": float(before[at_ends].max()),
         "step_take_mm": float(before.max()),
+        "notch_mm": float(_notch_mm(made.weights[near])[first - 1 : last - 1].max()),
+        "notch_take_mm": float(np.quantile(_notch_mm(made.edit.piece.weights), 0.99)),
     }
+
+
+def _notch_mm(weights: Array) -> Array:
+    """Return how far the surface leaves the middle of the frames beside, at most, (frames - 2,) in mm."""
+    bent = np.diff(weights, n=2, axis=0) @ _SURFACE.reshape(len(_SURFACE), -1) / 2
+    return np.asarray(np.linalg.norm(bent.reshape(len(bent), -1, 3), axis=-1).max(axis=1))
 
 
 def _step_mm(weights: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A hundred edits that a person would make: twenty kinds, each at the places of a take that call for it."""
+"""Edits that a person would make: thirty kinds, each at the places of a take that call for it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import find_peaks
 
-from engine.controls import ALL_INDEX
+from engine.controls import ALL_CONTROLS, ALL_INDEX
 from engine.corpus import Piece
 from engine.easing import ease
 from engine.extended import bundled_face
@@ -21,6 +21,8 @@ ROOM = 24  # frames of the piece beyond an edit, so that what eases out can be s
 PLACES = 5  # of each kind
 MOUTH = AREAS[0].controls
 LIDS = ("eyelid_right", "eyelid_left")
+HEIGHTS = ("corner_height_right", "corner_height_left")
+BROWS = ("brow_right", "brow_left")
 
 Frames = tuple[int, int]  # half-open
 Rule = Callable[[Array], list[Frames]]  # control curves, (frames, 16) in mm, to places that fit
@@ -38,6 +40,8 @@ SPEAKS_OF: dict[str, Mask] = {
     "left corner": _named(*_LOWER, but="Right") | _named("mouthRight", "jawRight"),
     "eyes": _named(*_LID_SHAPES),
     "right eye": _named(*_LID_SHAPES, but="Left"),
+    "brows of the eyes": _named("brow"),
+    "gaze of the eyes": _named("eyeLook"),
 }
 
 
@@ -186,6 +190,16 @@ KINDS: tuple[Kind, ...] = (
     Kind("wide eyes", "eyes", _stretches(30, _looks), _all(LIDS, _by(1.0))),
     Kind("squint", "eyes", _stretches(30, _looks), _all(LIDS, _times(0.65))),
     Kind("drowsy eyes", "eyes", _stretches(60, _looks), _all(LIDS, _times(0.4))),
+    Kind("corners up", "mouth", _stretches(30, _rests), _all(HEIGHTS, _by(3.0))),
+    Kind("one corner up", "left corner", _stretches(30, _rests), {"corner_height_left": _by(3.0)}),
+    Kind("corners down", "mouth", _stretches(30, _rests), _all(HEIGHTS, _by(-3.0))),
+    Kind("smile up and out", "mouth", _stretches(30, _rests), _all(HEIGHTS, _by(2.5)) | {"lips_horizontal": _by(5.0)}),
+    Kind("raise both brows", "brows of the eyes", _stretches(30, _looks), _all(BROWS, _by(2.0))),
+    Kind("raise one brow", "brows of the eyes", _stretches(30, _looks), {"brow_left": _by(2.0)}),
+    Kind("raise the inner brows", "brows of the eyes", _stretches(30, _looks), {"brow_inner": _by(2.0)}),
+    Kind("jaw to one side", "mouth", _stretches(20, _rests), {"jaw_sideways": _by(2.0)}),
+    Kind("look aside", "gaze of the eyes", _stretches(30, _looks), {"gaze_horizontal": _by(10.0)}),
+    Kind("look up", "gaze of the eyes", _stretches(30, _looks), {"gaze_vertical": _by(6.0)}),
 )
 
 
@@ -222,5 +236,5 @@ def _asked(kind: Kind, piece: Piece, frames: Frames) -> Array:
         inside = wanted(curve[slice(*frames)])
         held = np.pad(inside, EASE_FRAMES, mode="edge")
         bent = curve[first:last] + ease(1 - away) * (held - curve[first:last])
-        asked[first:last, ALL_INDEX[name]] = np.maximum(bent, 0.0)
+        asked[first:last, ALL_INDEX[name]] = bent if ALL_CONTROLS[ALL_INDEX[name]].signed else np.maximum(bent, 0.0)
     return asked

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import torch
 from scipy.ndimage import median_filter
 
 from engine.character import Character, bundled
@@ -185,8 +184,16 @@ def _surface(character: Character) -> Array:
 def load(folder: Path = MODELS) -> FacePrior:
     """Read the prior; raises `AssetError` where it is missing or damaged."""
     tensors, _ = load_model(folder / "prior.safetensors", kind=KIND)
-    arrays = {name: tensor.to(torch.float64).numpy() for name, tensor in tensors.items() if name != "whole"}
-    return FacePrior(**arrays, whole=tensors["whole"].numpy().astype(bool))
+    stored: dict[str, Array] = {name: np.asarray(tensor, np.float64) for name, tensor in tensors.items()}
+    return FacePrior(
+        covariance=stored["covariance"],
+        surface=stored["surface"],
+        low=stored["low"],
+        high=stored["high"],
+        fastest=stored["fastest"],
+        faces=stored["faces"],
+        whole=stored["whole"] > 0,
+    )
 
 
 @lru_cache(maxsize=1)

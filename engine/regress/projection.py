@@ -69,7 +69,7 @@ def project(
             break
         active, miss, slope = active[far], miss[far], slope[far]
         bounds = (low[active], high[active])
-        step = _step(current[active], slope, miss, bounds, covariance, damping[active])
+        step = _step(slope, miss, damping[active], covariance=covariance, at=(current[active], *bounds))
         tried = np.clip(current[active] + step, *bounds)
         left, next_slope = goal.at(tried, active)
         nearer = (left**2).sum(axis=1) < (miss**2).sum(axis=1)
@@ -107,14 +107,16 @@ class _Goal:
         return np.concatenate([miss, off.reshape(len(rows), -1)], axis=1), np.concatenate([slope, along], axis=1)
 
 
-def _step(
-    weights: Array, slope: Array, miss: Array, bounds: tuple[Array, Array], covariance: Array, damping: Array
-) -> Array:
-    """Return the damped step, (frames, 52), that leaves weights at a limit where they would go beyond it."""
+def _step(slope: Array, miss: Array, damping: Array, *, covariance: Array, at: tuple[Array, Array, Array]) -> Array:
+    """Return the damped step, (frames, 52), that leaves weights at a limit where they would go beyond it.
+
+    `at` are weights and the least and the most that they may be, (frames, 52) each.
+    """
+    weights, low, high = at
     free: Mask = np.ones(weights.shape, bool)
     step = _damped(slope, miss, covariance, damping)
     for _ in range(STEPS.releases):
-        stuck: Mask = free & (((weights <= bounds[0]) & (step < 0)) | ((weights >= bounds[1]) & (step > 0)))
+        stuck: Mask = free & (((weights <= low) & (step < 0)) | ((weights >= high) & (step > 0)))
         rows = np.flatnonzero(stuck.any(axis=1))
         if not len(rows):
             break

@@ -65,7 +65,7 @@ class Proposer:
         if signed:
             return np.asarray((one + other[:, MIRROR]) / 2)
         right, left = ((each + each[:, MIRROR]) / 2 for each in (one, other))
-        return np.where(RIGHT_SHAPES, right, np.where(LEFT_SHAPES, left, (right + left) / 2))
+        return np.asarray(np.where(RIGHT_SHAPES, right, np.where(LEFT_SHAPES, left, (right + left) / 2)))
 
     def _run(self, area: Area, curves: Array, origin: int) -> Array:
         """Return weights, (2, frames, 52), of curves, (2, frames, controls)."""

@@ -241,7 +241,7 @@ def _model_frames(size: Array, step: float) -> tuple[Array, int]:
     middle = float((np.arange(len(size)) * size).sum() / size.sum())
     middle = round(middle / step, 2) * step  # the same while an edit is dragged further
     before, after = int(middle / step + 1e-6), int((len(size) - 1 - middle) / step + 1e-6)
-    return middle + step * np.arange(-before, after + 1), before
+    return np.asarray(middle + step * np.arange(-before, after + 1), np.float64), before
 
 
 def _fade(size: Array, *, feather: float, margin: float = 0.0) -> Array:

@@ -15,13 +15,15 @@ from app.session.commands import EditCommand, MarkCommand
 from app.session.keeper import Keeper
 from app.session.opening import Wish, opened
 from engine import project
-from engine.controls import measure
 from engine.errors import EngineError
+from engine.extended import bundled_face
 from engine.project import Marks, Note, Pin, Project, Span
 from engine.take import SHAPES, Take
 from tests.performance import kills
 
 Made = Callable[..., Keeper]
+
+measure = bundled_face().measure
 
 
 @pytest.fixture
@@ -149,7 +151,7 @@ def test_a_step_that_was_merged_is_kept_as_it_became(qtbot: QtBot, make: Made) -
     session = first._session
     for value in (0.25, 0.5):
         rows = np.full((5, len(SHAPES)), value)
-        patch = SimpleNamespace(start=2, stop=7, weights=rows, asked=measure(rows), reached=measure(rows))
+        patch = SimpleNamespace(start=2, stop=7, weights=rows, asked=measure(rows), reached=measure(rows), granted=None)
         kept(qtbot, first, lambda patch=patch: session.undo.push(Nudge(session, patch, "nudge")))
     assert session.undo.count() == 1
     first.close()
