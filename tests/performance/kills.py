@@ -14,7 +14,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.project import Contents, Edit, Project, create, replay
 from engine.take import SHAPES, Take
 
@@ -60,8 +60,10 @@ def edit_until_killed(folder: Path, seed: int, tell: Connection, *, frames: int 
             session.undo.setIndex(position)
         else:
             start, length = int(rng.integers(0, FRAMES - 200)), int(rng.integers(1, 200))
-            weights, asked = rng.random((length, len(SHAPES))), rng.random((length, len(CONTROLS)))
-            patch = SimpleNamespace(start=start, stop=start + length, weights=weights, asked=asked, reached=asked)
+            weights, asked = rng.random((length, len(SHAPES))), rng.random((length, len(ALL_CONTROLS)))
+            patch = SimpleNamespace(
+                start=start, stop=start + length, weights=weights, asked=asked, reached=asked, granted=None
+            )
             command = EditCommand(session, patch, f"edit {session.undo.count()}")
             edits = (*now.edits[: now.position], command.edit)
             tell.send(("doing", fingerprint(replace(now, edits=edits, position=len(edits)))))
@@ -86,7 +88,7 @@ def save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
     tell.send(("kept", fingerprint(contents)))
     project = create(folder / "work.retake", contents)
     while True:
-        rows = rng.random((60, len(SHAPES))), np.full((60, len(CONTROLS)), np.nan)
+        rows = rng.random((60, len(SHAPES))), np.full((60, len(ALL_CONTROLS)), np.nan)
         edits = (*contents.edits, Edit("drag", "an edit", int(rng.integers(0, FRAMES - 60)), *rows))
         contents = Contents(contents.original, edits, len(edits))
         tell.send(("doing", fingerprint(contents)))

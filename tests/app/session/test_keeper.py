@@ -47,7 +47,7 @@ def push(session: Session, seed: int) -> EditCommand:
     weights = rng.random((12, len(SHAPES)))
     reached = measure(weights)
     asked = np.where(rng.random(reached.shape) < 0.3, reached + 1.0, session.controls[start : start + 12])
-    patch = SimpleNamespace(start=start, stop=start + 12, weights=weights, asked=asked, reached=reached)
+    patch = SimpleNamespace(start=start, stop=start + 12, weights=weights, asked=asked, reached=reached, granted=None)
     command = EditCommand(session, patch, f"edit {seed}", inputs={"seed": seed})
     session.undo.push(command)
     return command
