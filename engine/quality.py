@@ -164,7 +164,8 @@ def _sorted(flags: Iterable[Flag]) -> tuple[Flag, ...]:
 
 
 def _weight(share: float) -> float:
-    return float(min(1.0, LEAST + (1 - LEAST) * share))
+    # rounded so that it is the same whether curves were measured whole or in parts
+    return round(float(min(1.0, LEAST + (1 - LEAST) * share)), 9)
 
 
 def _over(seen: Seen, low: int, high: int) -> Iterator[Flag]:
