@@ -16,10 +16,7 @@ def falloff(frames: Array, centre: float, radius_frames: float) -> Array:
 def pulled(
     curve: Array, start: int, centre: int, *, by: float, radius_frames: int, strength: float, lowest: float = 0.0
 ) -> Array:
-    """Return rows of a curve, (n,) from frame `start`, pulled at `centre`, nowhere below its lowest value.
-
-    A pull that would take the brush's middle below it is cut short, so that the brush keeps its form.
-    """
+    """Return rows of a curve, (n,) from frame `start`, pulled at `centre`, nowhere below its lowest value."""
     frames = np.arange(start, start + len(curve), dtype=np.float64)
     return np.asarray(np.maximum(lowest, curve + strength * by * falloff(frames, centre, radius_frames)))
 
