@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen
 from engine.quality.tuning import TUNING
@@ -24,7 +24,7 @@ def missed(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     for column in np.flatnonzero((by_mm > _T.missed_mm).any(axis=0)):
         for start, stop in runs(by_mm[:, column] > _T.missed_mm):
             worst = start + int(np.argmax(by_mm[start:stop, column]))
-            control = CONTROLS[column]
+            control = ALL_CONTROLS[column]
             text = (
                 f"{control.title.capitalize()}: {asked[worst, column]:.1f} {control.unit} was asked for, "
                 f"a plausible face gets to {reached[worst, column]:.1f} {control.unit}."

@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.anatomy import Indices
 from engine.quality.record import Flag, weight_of
-from engine.quality.seen import LIDS, Seen, drops
+from engine.quality.seen import LIDS, Seen, drops, rounded
 from engine.quality.tuning import TUNING
 from engine.take import SHAPE_INDEX, Mask, runs
 
@@ -52,7 +52,7 @@ def _shut_before(seen: Seen) -> list[int]:
     """Return the frames at which blinks were shut before the edits, and nobody has asked anything of the lids since."""
     if seen.original_controls is None:
         return []
-    before = np.max([seen.original_controls[:, control] for control in LIDS.values()], axis=0)
+    before = rounded(np.max([seen.original_controls[:, control] for control in LIDS.values()], axis=0))
     shut = (drops(before, seen.frames(_T.blink_within_s)) > _T.blink_drop_mm) & (before < _T.shut_mm) & seen.kept
     if seen.asked is not None:
         shut &= np.isnan(seen.asked[:, list(LIDS.values())]).all(axis=1)
@@ -64,7 +64,9 @@ def late(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     first, last = _around(seen, low, high)
     within = seen.frames(_T.blink_within_s)
     bottoms = [
-        np.flatnonzero((drops(seen.controls[first:last, control], within) > _T.blink_drop_mm) & seen.kept[first:last])
+        np.flatnonzero(
+            (drops(rounded(seen.controls[first:last, control]), within) > _T.blink_drop_mm) & seen.kept[first:last]
+        )
         for control in LIDS.values()
     ]
     late_by = np.zeros(last - first)

@@ -9,8 +9,9 @@ from functools import cached_property
 import numpy as np
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from engine.controls import CONTROL_INDEX, bundled_measurer
+from engine.controls import CONTROL_INDEX
 from engine.errors import EditError
+from engine.extended import bundled_face
 from engine.formats.audio import Audio
 from engine.quality.tuning import TUNING
 from engine.speech.lane import VisemeLane
@@ -79,7 +80,7 @@ class Seen:
     @cached_property
     def blinks(self) -> tuple[Array, Array]:
         """The gap of the wider open lids, (frames,) mm, and the drops of that curve."""
-        gap = np.max([self.controls[:, control] for control in LIDS.values()], axis=0)
+        gap = rounded(np.max([self.controls[:, control] for control in LIDS.values()], axis=0))
         return gap, drops(gap, self.frames(TUNING.blink_within_s))
 
     def frames(self, seconds: float) -> int:
@@ -105,7 +106,7 @@ def seen_of(
 
     Raises `EditError` for an original of another length.
     """
-    measure = bundled_measurer().measure
+    measure = bundled_face().measure
     turned = take.rotations[:, :3] if take.has_head else None
     if original is None:
         measured = measure(take.weights) if controls is None else controls[0]
@@ -139,6 +140,11 @@ def strengths(seen: Seen, low: int, high: int, *, reach: int, verdict: Callable[
         result = verdict(seen.weights[first:last], seen.kept[first:last])
         found[start - low : stop - low] = result[start - first : stop - first]
     return found
+
+
+def rounded(gap_mm: Array) -> Array:
+    """Return a curve without its last digits, so that equal frames are equal whether measured whole or in parts."""
+    return np.asarray(np.round(gap_mm, 6))
 
 
 def drops(gap_mm: Array, within: int) -> Array:
