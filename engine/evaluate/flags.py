@@ -13,12 +13,14 @@ from scipy.stats import binomtest, chi2
 from engine.controls import measure
 from engine.corpus import TEST, data_folder, load_takes
 from engine.evaluate import Report, Row
-from engine.evaluate.flags_plants import EXCERPT_S, LONG_S, PLANTS, Planted
+from engine.evaluate.flags_plants import PLANTS, Planted
 from engine.formats import audio
 from engine.quality import KINDS, Flag, Seen, Sound, flags_of, sound_of
 from engine.take import Take
 
 EACH = 15  # planted faults of every kind: 300 in all
+EXCERPT_S = 12.0
+LONG_S = {"swapped": 60.0, "unblinking": 60.0, "unclosed": 60.0, "short": 40.0, "sound": 40.0}  # instead, for these
 TRIES = 60  # excerpts that are tried for each
 WHOLE = ("swapped", "sound")  # their flags cover the take, so that they lie on any plant
 TOLERANCE_S = 0.1

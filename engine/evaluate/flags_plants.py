@@ -348,6 +348,3 @@ PLANTS: dict[str, Plant] = {
     "short": _short,
     "sound": _out_of_step,
 }
-# Seconds of excerpt; 12 for the others.
-LONG_S = {"swapped": 60.0, "unblinking": 60.0, "unclosed": 60.0, "short": 40.0, "sound": 40.0}
-EXCERPT_S = 12.0
