@@ -9,6 +9,7 @@ from engine.quality import edit, eyes, lips, shape, sound, tracker
 from engine.quality.record import Flag
 from engine.quality.seen import Seen
 from engine.quality.tuning import TUNING
+from engine.words import counted
 
 _T = TUNING
 
@@ -48,7 +49,11 @@ TABLE: tuple[Kind, ...] = (
         _beside(2),
     ),
     Kind(
-        "frozen", "frozen frames", tracker.frozen, f"{_T.repeats} frames like the one before", _beside(1 + _T.repeats)
+        "frozen",
+        "frozen frames",
+        tracker.frozen,
+        f"{counted(_T.repeats, 'frame')} like the one before",
+        _beside(1 + _T.repeats),
     ),
     Kind(
         "jitter",
