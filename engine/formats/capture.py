@@ -17,7 +17,8 @@ CAPTURE_BUDGET = replace(BUDGET, values=40_000_000)  # 41 markers at 60 frames p
 
 FARTHEST_MM = 1e8
 SLOWEST_FPS, FASTEST_FPS = 0.01, 10_000.0
-TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
+_SPELT = {"milli": "mm", "centi": "cm", "met": "m", "inch": "in"}  # how the long name of a unit begins
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +56,14 @@ class Markers:
 
     def __len__(self) -> int:
         return len(self.positions)
+
+
+def unit_named(text: str) -> str | None:
+    """Return the unit, a key of `TO_MM`, that a file names, short or in full; None for another."""
+    name = text.strip().lower()
+    if name in TO_MM:
+        return name
+    return next((unit for start, unit in _SPELT.items() if name.startswith(start)), None)
 
 
 def each_once(names: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -13,12 +13,21 @@ import numpy.typing as npt
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
 from engine.formats.capture import TO_MM, Markers, each_once, unit_by_size
+from engine.formats.livelink_clock import STANDARD_FPS
 from engine.formats.markers_text import decoded, lines_of, numbers
 from engine.take import Array
 
 EXPECTED = "A marker CSV has columns such as time, nose_x, nose_y, nose_z; empty cells are gaps."
 FALLBACK_FPS = 30.0
-_COORDINATE = re.compile(r"^(.+?)[ _.:]?([xyzXYZ])(?: ?[(\[](mm|cm|m)[)\]])?$")
+_COORDINATE = re.compile(
+    r"^(.+?)(?:[ _.:]+(?:t|trans|translate|translation|pos|position)(?=[ _.]?[xyz]))?"  # what some programs put between
+    r"[ _.:]?[(\[]?([xyz])[)\]]?(?: ?[(\[](mm|cm|m|in)[)\]])?$",
+    re.IGNORECASE,
+)
+_TIME = re.compile(
+    r"(?:time|timestamp|seconds|secs?|t)(?:[ _]?[(\[]?(s|secs?|seconds|ms|msecs?|milliseconds)[)\]]?)?", re.IGNORECASE
+)
+SAME_RATE = 5e-4  # share by which a rate may be off a standard one; the next one, of NTSC, is 1e-3 away
 
 
 def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Markers:
@@ -31,7 +40,8 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     names, doubled = each_once(given)
     if len(lines) < 2:
         raise FormatError(f"{path.name} has a header but no frames.")
-    table = numbers(lines[1:], len(header), separator=separator.encode(), first_row=2, path=path)
+    rows = [_plain(line, separator) for line in lines[1:]]
+    table = numbers(rows, len(header), separator=separator.encode(), first_row=2, path=path)
     positions = table[:, columns]
     if not np.isfinite(positions).all(axis=2).any():
         raise FormatError(f"{path.name} holds no frame in which a marker was seen.")
@@ -47,13 +57,19 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     return Markers(positions * TO_MM[unit or said or "mm"], names, rate, path.name, tuple(notices))
 
 
+def _plain(row: bytes, separator: str) -> bytes:
+    """Return a row of numbers without quotes, and with points for the commas of other decimals."""
+    bare = row.replace(b'"', b"")
+    return bare if separator == "," else bare.replace(b",", b".")
+
+
 def _columns(header: list[str], path: Path) -> tuple[tuple[str, ...], npt.NDArray[np.int64], str | None]:
     """Return the markers' names, their columns, (n, 3), and the unit that the header names."""
     found: dict[str, list[dict[str, int]]] = {}
     units = set()
     for column, cell in enumerate(header):
         match = _COORDINATE.match(cell)
-        if match and cell.lower() not in ("time", "frame", "index"):
+        if match and not _TIME.fullmatch(cell) and cell.lower() not in ("frame", "index"):
             sets = found.setdefault(match[1], [{}])
             if len(sets[-1]) == 3 and match[2].lower() in sets[-1]:
                 sets.append({})  # another marker of the same name
@@ -79,11 +95,21 @@ def _columns(header: list[str], path: Path) -> tuple[tuple[str, ...], npt.NDArra
 
 def _rate(header: list[str], table: Array) -> float | None:
     for column, cell in enumerate(header):
-        if cell.lower() in ("time", "time_s", "seconds", "t") and len(table) > 1:
-            steps = np.diff(table[:, column])
-            typical = float(np.nanmedian(steps)) if np.isfinite(steps).any() else 0.0
-            return round(1 / typical, 6) if 1e-4 < typical < 10 else None
+        named = _TIME.fullmatch(cell)
+        if named and len(table) > 1:
+            steps = np.diff(table[:, column]) / (1000 if (named[1] or "").lower().startswith("m") else 1)
+            return _usual_rate(steps[np.isfinite(steps)])
     return None
+
+
+def _usual_rate(steps: Array) -> float | None:
+    """Return frames per second of steps in seconds, (n,), whose times may be rounded; None where they tell none."""
+    typical = float(np.median(steps)) if len(steps) else 0.0
+    if not 1e-4 < typical < 10:
+        return None
+    rate = 1 / float(steps[np.abs(steps / typical - 1) < 0.5].mean())  # of plain steps: none is missing between them
+    nearest = min(STANDARD_FPS, key=lambda standard: abs(standard - rate))
+    return nearest if abs(nearest / rate - 1) < SAME_RATE else round(rate, 6)
 
 
 def write(markers: Markers, path: Path) -> None:

@@ -43,6 +43,55 @@ def test_units_are_guessed_from_the_size_and_said(tmp_path: Path) -> None:
     np.testing.assert_allclose(read(path, unit="cm", fps=50.0).positions[0, 1], [1, 2, 0])
 
 
+def table(head: str, *, fps: float = 30.0, separator: str = ",", time: str = "{:.4f}") -> str:
+    names = [head.format(name, axis) for name in ("Nose", "Left") for axis in "XYZ"]
+    rows = [
+        [str(row), time.format(row / fps), *("%.3f" % (row + 60 * place) for place in range(6))] for row in range(120)
+    ]
+    return "\n".join(separator.join(cells) for cells in [["Frame", "Time (Seconds)", *names], *rows]) + "\n"
+
+
+@pytest.mark.parametrize("head", ["{}_{}", "{}.{}", "{} ({})", "{}:{}", "{}.t{}", "{}_pos{}", "{} Position {}", "{}{}"])
+def test_columns_are_named_as_other_programs_do(tmp_path: Path, head: str) -> None:
+    path = tmp_path / "m.csv"
+    path.write_text(table(head))
+    found = read(path)
+    assert found.names == ("Nose", "Left") and found.fps == 30
+    assert found.positions[2].tolist() == [[2, 62, 122], [182, 242, 302]]
+
+
+@pytest.mark.parametrize("fps", [24, 25, 24_000 / 1001, 30_000 / 1001, 30, 59.94005994, 60, 100, 120])
+def test_rounded_times_tell_the_rate(tmp_path: Path, fps: float) -> None:
+    path = tmp_path / "m.csv"
+    path.write_text(table("{}_{}", fps=fps))
+    assert read(path).fps == pytest.approx(fps, rel=1e-8)
+    path.write_text(table("{}_{}", fps=fps / 1000, time="{:.1f}").replace("(Seconds)", "(ms)"))
+    assert read(path).fps == pytest.approx(fps, rel=1e-8)
+
+
+def test_a_spreadsheet_s_quotes_and_decimal_commas_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "m.csv"
+    path.write_text(table("{}_{}"))
+    expected = read(path)
+    path.write_text(table("{}_{}", separator=";").replace(".", ","))
+    np.testing.assert_array_equal(read(path).positions, expected.positions)
+    path.write_text("\n".join('"' + line.replace(",", '","') + '"' for line in table("{}_{}").splitlines()))
+    np.testing.assert_array_equal(read(path).positions, expected.positions)
+    assert read(path).fps == expected.fps == 30
+
+
+@pytest.mark.parametrize(
+    ("unit", "mm"), [("Meters", 1000), ("millimeters", 1), ("inches", 25.4), ("CM", 10), ("metres", 1000)]
+)
+def test_units_of_a_trc_are_known_in_full_and_names_in_other_letters(tmp_path: Path, unit: str, mm: float) -> None:
+    path = tmp_path / "m.trc"
+    head = f"PathFileType\t4\t(X/Y/Z)\tm.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n60\t1\t1\t{unit}\n"
+    path.write_text(f"{head}Frame#\tTime\tLèvre\n\t\tX1\tY1\tZ1\n1\t0\t1\t2\t3\n", "latin-1")
+    found = read(path)
+    assert found.names == ("Lèvre",)
+    np.testing.assert_allclose(found.positions[0, 0], np.array([1, 2, 3]) * mm)
+
+
 CSV = "time,a_x,a_y,a_z\n"
 TRC = "PathFileType\t4\t(X/Y/Z)\tm.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n{}\nFrame#\tTime\ta\n\t\tX1\tY1\tZ1\n"
 
