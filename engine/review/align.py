@@ -68,23 +68,26 @@ def align(before: Take, after: Take, *, offset_s: float | None = None) -> Alignm
     """Return where `after` lies on the clock of `before`.
 
     An offset that is given wins, then timecodes under which both move alike. Else the lag with the highest normalised
-    correlation of all 52 curves is taken, unless both have one length and rate and move alike from the start, as edits do.
+    correlation of all 52 curves is taken, unless both have one length and rate, as edits do, and either move alike from
+    the start or nowhere: of a take whose frames are mostly lost the motion tells nothing.
 
     Raises `EditError` where an offset leaves no common frame.
     """
     if offset_s is not None:
         _require_overlap(before, after, offset_s)
         return Alignment(offset_s, "offset", _correlation_at(before, after, offset_s))
+    same_clock = before.fps == after.fps and len(before) == len(after)
     if before.start_s > 0 and after.start_s > 0:
         told = after.start_s - before.start_s
         if _overlap_s(before, after, told) >= _needed_s(before, after):
             correlation = _correlation_at(before, after, told)
-            if correlation >= Tuning.alike:
+            if correlation >= Tuning.alike or (same_clock and abs(told) * after.fps < 0.5):
                 return Alignment(told, "timecode", correlation)
     together = _correlation_at(before, after, 0.0)
     lag = _best_lag(before, after)
     correlation = _correlation_at(before, after, lag)
-    same_clock = before.fps == after.fps and len(before) == len(after)
+    if same_clock and correlation < Tuning.alike:
+        return Alignment(0.0, "start", together)
     if together >= Tuning.alike and (same_clock or together >= correlation):
         return Alignment(0.0, "start", together)
     return Alignment(lag, "correlation", correlation)
