@@ -142,7 +142,7 @@ def _best_lag(before: Take, after: Take) -> float:
     """Return the offset in seconds with the highest correlation over a long enough overlap.
 
     ``r(l) = sum_t a(t + l) b(t) / sqrt(sum_t a(t + l)^2 sum_t b(t)^2)`` over the frames both have at lag l, with each
-    curve's mean over its whole take removed.
+    curve's mean over its whole take removed; 0 where nothing moves alike.
     """
     a, b = _curves(before), _curves(after)
     a, b = a - a.mean(axis=0), b - b.mean(axis=0)
@@ -156,4 +156,4 @@ def _best_lag(before: Take, after: Take) -> float:
     power = np.sqrt((energy_a[last] - energy_a[first]) * (energy_b[last - lags] - energy_b[first - lags]))
     long_enough = (last - first) >= _needed_s(before, after) * MODEL_FPS - 1
     score = np.where(long_enough & (power > 1e-9), product / np.maximum(power, 1e-9), -1.0)
-    return float(lags[np.argmax(score)] / MODEL_FPS)
+    return float(lags[np.argmax(score)] / MODEL_FPS) if score.max() > 0 else 0.0
