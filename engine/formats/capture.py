@@ -11,7 +11,7 @@ import numpy as np
 from engine.errors import EditError
 from engine.formats.budget import BUDGET
 from engine.take import Array
-from engine.words import counted
+from engine.words import counted, plural
 
 CAPTURE_BUDGET = replace(BUDGET, values=40_000_000)  # 41 markers at 60 frames per second for an hour and a half
 
@@ -84,8 +84,9 @@ def each_once(names: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
             name = f"{name} {number}"
         seen.add(name)
         found.append(name)
+    count, named = len(doubled), plural(len(doubled), "has", "have")
     said = (
-        f"{counted(len(doubled), 'marker')} with a name that another has too, such as {doubled[0][:40]}: numbered."
+        f"{counted(count, 'marker')} {named} a name that another has too, and got a number: {doubled[0][:40]}."
         if doubled
         else ""
     )
@@ -97,4 +98,4 @@ def unit_by_size(positions: Array) -> tuple[str, str]:
     low, high = np.nanmin(positions, axis=1), np.nanmax(positions, axis=1)
     extent = float(np.nanmedian((high - low).max(axis=1)))
     unit = "m" if extent < 1.5 else "cm" if extent < 45 else "mm"
-    return unit, f"Positions were taken as {unit}: the markers span {extent:.3g} of them."
+    return unit, f"Positions are taken as {unit}: the markers span {extent:.3g} {unit}."

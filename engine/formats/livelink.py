@@ -121,7 +121,7 @@ def _said_sides(judged: Judgement, reading: Reading) -> list[str]:
     if not judged.recorded:
         return [
             "Left and right of mouth and jaw are taken as named, since the mouth moves with its own side "
-            f"({judged.confidence}, r = {judged.agreement:+.2f})."
+            f"({judged.confidence})."
         ]
     if judged.confidence == "uncertain":
         return ["Left and right of mouth and jaw are taken as the app records; the motion does not tell for certain."]

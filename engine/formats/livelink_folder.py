@@ -167,7 +167,7 @@ def _checked(take: Take, parts: Parts, target_fps: float | None, reading: Readin
             notices = (f"Taken as {target_fps:g} fps, from {CARD}; the timecodes make no sense.", *kept, *said)
             return replace(take, fps=target_fps, notices=notices)
         if abs(target_fps / take.fps - 1) > SAME_RATE:
-            said.append(f"{CARD} says {target_fps:g} fps; the timecodes say {take.fps:.5g}, and were believed.")
+            said.append(f"{CARD} says {target_fps:g} fps, the timecodes {take.fps:.5g}; the timecodes are believed.")
     return replace(take, notices=(*take.notices, *said))
 
 

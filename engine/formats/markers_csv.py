@@ -14,11 +14,13 @@ from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
 from engine.formats.capture import TO_MM, Markers, each_once, unit_by_size
 from engine.formats.livelink_clock import STANDARD_FPS
+from engine.formats.markers_exports import MOST_HEADINGS, heading_of
 from engine.formats.markers_text import decoded, lines_of, numbers
 from engine.take import Array
 
 EXPECTED = "A marker CSV has columns such as time, nose_x, nose_y, nose_z; empty cells are gaps."
 FALLBACK_FPS = 30.0
+SEPARATORS = (",", ";", "\t")
 _COORDINATE = re.compile(
     r"^(.+?)(?:[ _.:]+(?:t|trans|translate|translation|pos|position)(?=[ _.]?[xyz]))?"  # what some programs put between
     r"[ _.:]?[(\[]?([xyz])[)\]]?(?: ?[(\[](mm|cm|m|in)[)\]])?$",
@@ -33,15 +35,20 @@ SAME_RATE = 5e-4  # share by which a rate may be off a standard one; the next on
 def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Markers:
     """Read a marker CSV; separators may be commas, semicolons or tabs. Parameters and errors as `markers.read`."""
     lines = lines_of(path, EXPECTED)
-    first = decoded(lines[0], path, EXPECTED)
-    separator = max((",", ";", "\t"), key=first.count)
-    header = [cell.strip().strip('"') for cell in first.split(separator)]
+    first = [decoded(line, path, EXPECTED) for line in lines[:MOST_HEADINGS]]
+    parted = next((line for line in first if any(mark in line for mark in SEPARATORS)), "")
+    separator = max(SEPARATORS, key=parted.count)
+    cells = [[cell.strip().strip('"') for cell in line.split(separator)] for line in first]
+    exported = heading_of(cells)
+    header = list(exported.cells) if exported else cells[0]
+    start = exported.rows if exported else 1
     given, columns, said = _columns(header, path)
+    said = said or (exported.unit if exported else None)
     names, doubled = each_once(given)
-    if len(lines) < 2:
+    if len(lines) <= start:
         raise FormatError(f"{path.name} has a header but no frames.")
-    rows = [_plain(line, separator) for line in lines[1:]]
-    table = numbers(rows, len(header), separator=separator.encode(), first_row=2, path=path)
+    rows = [_plain(line, separator) for line in lines[start:]]
+    table = numbers(rows, len(header), separator=separator.encode(), first_row=start + 1, path=path)
     positions = table[:, columns]
     if not np.isfinite(positions).all(axis=2).any():
         raise FormatError(f"{path.name} holds no frame in which a marker was seen.")
@@ -50,7 +57,7 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     if unit is None and said is None:
         said, notice = unit_by_size(positions[np.isfinite(positions).any(axis=(1, 2))])
         notices.append(notice)
-    rate = fps or _rate(header, table)
+    rate = fps or (exported.fps if exported else None) or _rate(header, table)
     if rate is None:
         rate = FALLBACK_FPS
         notices.append(f"The file has no times: taken as {FALLBACK_FPS:g} fps.")
