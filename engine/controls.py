@@ -21,7 +21,14 @@ _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 
 @dataclass(frozen=True)
 class Control:
-    """One control: the distance between two landmarks, with what the screen says of it."""
+    """One control, with what the screen says of it.
+
+    Attributes
+    ----------
+    start, end : the landmarks whose distance it is; empty where `engine.extended` measures it
+    area : which part of the face it speaks of
+    signed : whether it may be below zero, as a place or an angle may and a distance may not
+    """
 
     name: str
     title: str
@@ -29,6 +36,7 @@ class Control:
     end: str
     area: str
     unit: str = "mm"
+    signed: bool = False
 
 
 CONTROLS: tuple[Control, ...] = (
@@ -41,17 +49,30 @@ CONTROLS: tuple[Control, ...] = (
     Control("nose_to_lip", "nose to lip", "nose_bridge", "lip_upper", "lower"),
     Control("chin_to_lip", "chin to lip", "chin", "lip_lower", "lower"),
 )
+# Off by default. Sideways, the character's left is positive; the height of a corner is 0 on the face at rest.
+EXTENDED: tuple[Control, ...] = (
+    Control("brow_right", "right brow", "", "", "brows"),
+    Control("brow_left", "left brow", "", "", "brows"),
+    Control("brow_inner", "inner brows", "", "", "brows"),
+    Control("jaw_sideways", "jaw sideways", "", "", "lower", signed=True),
+    Control("gaze_horizontal", "gaze sideways", "", "", "gaze", "degrees", signed=True),
+    Control("gaze_vertical", "gaze up", "", "", "gaze", "degrees", signed=True),
+    Control("corner_height_right", "right corner up", "", "", "lower", signed=True),
+    Control("corner_height_left", "left corner up", "", "", "lower", signed=True),
+)
+ALL_CONTROLS = CONTROLS + EXTENDED
 # BSS20 section 5.2: mouth opening, corners and one eyelid are the fewest that tell of mouth and lids.
 FEW = ("lips_vertical", "lips_horizontal", "eyelid_left")
 CONTROL_INDEX: dict[str, int] = {control.name: index for index, control in enumerate(CONTROLS)}
+ALL_INDEX: dict[str, int] = {control.name: index for index, control in enumerate(ALL_CONTROLS)}
 
 
 def control_index(name: str) -> int:
-    """Return the column of a control; raises `EditError` that lists the names."""
+    """Return the column of a control among `ALL_CONTROLS`; raises `EditError` that lists the names."""
     try:
-        return CONTROL_INDEX[name]
+        return ALL_INDEX[name]
     except KeyError:
-        known = ", ".join(CONTROL_INDEX)
+        known = ", ".join(ALL_INDEX)
         raise EditError(f"There is no control called {name!r}.", f"Controls are: {known}.") from None
 
 

@@ -13,8 +13,9 @@ from functools import cached_property
 import numpy as np
 
 from engine.anatomy import BOTH, EXCLUSIVE, Indices, clash
-from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer
+from engine.controls import ALL_CONTROLS, CONTROL_INDEX
 from engine.errors import EditError
+from engine.extended import bundled_face
 from engine.speech.lane import VisemeLane
 from engine.speech.visemes import NAMES
 from engine.take import Array, Mask, Take, runs
@@ -61,11 +62,11 @@ class Seen:
     Attributes
     ----------
     weights : (frames, 52)
-    controls : (frames, 8) mm, measured on the weights
+    controls : (frames, 16), measured on the weights
     fps : frames per second
     lost : (frames,) bool, where the tracker had no face and nobody has filled one in since
-    asked : (frames, 8) mm, NaN where nothing was asked; None where nothing was anywhere
-    original_controls : (frames, 8) mm before any edit; None without one
+    asked : (frames, 16), NaN where nothing was asked; None where nothing was anywhere
+    original_controls : (frames, 16) before any edit; None without one
     visemes : what is said when
     """
 
@@ -95,20 +96,20 @@ def seen_of(
 
     Parameters
     ----------
-    asked : (frames, 8) mm, NaN where nothing was asked
-    controls : of the take and of the original, (frames, 8) mm each, where they have been measured
+    asked : (frames, 16), NaN where nothing was asked
+    controls : of the take and of the original, (frames, 16) each, where they have been measured
 
     Raises `EditError` for an original of another length.
     """
     if original is None:
-        measured = bundled_measurer().measure(take.weights) if controls is None else controls[0]
+        measured = bundled_face().measure(take.weights) if controls is None else controls[0]
         return Seen(take.weights, measured, take.fps, take.lost, asked, None, visemes)
     if len(original) != len(take):
         raise EditError(
             f"The original has {counted(len(original), 'frame')}, the take {len(take)}.",
             "Name the take that was edited.",
         )
-    measure = bundled_measurer().measure
+    measure = bundled_face().measure
     now, before = controls if controls is not None else (measure(take.weights), measure(original.weights))
     return Seen(take.weights, now, take.fps, take.lost, asked, before, visemes)
 
@@ -156,7 +157,8 @@ def _sorted(flags: Iterable[Flag]) -> tuple[Flag, ...]:
 
 
 def _weight(share: float) -> float:
-    return float(min(1.0, LEAST + (1 - LEAST) * share))
+    # rounded so that it is the same whether curves were measured whole or in parts
+    return round(float(min(1.0, LEAST + (1 - LEAST) * share)), 9)
 
 
 def _over(seen: Seen, low: int, high: int) -> Iterator[Flag]:
@@ -215,9 +217,10 @@ def _missed(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     for column in np.flatnonzero((by_mm > MISSED_MM).any(axis=0)):
         for start, stop in runs(by_mm[:, column] > MISSED_MM):
             worst = start + int(np.argmax(by_mm[start:stop, column]))
+            control = ALL_CONTROLS[column]
             text = (
-                f"{CONTROLS[column].title.capitalize()}: {asked[worst, column]:.1f} mm was asked for, "
-                f"a plausible face gets to {reached[worst, column]:.1f} mm."
+                f"{control.title.capitalize()}: {asked[worst, column]:.1f} {control.unit} was asked for, "
+                f"a plausible face gets to {reached[worst, column]:.1f} {control.unit}."
             )
             share = (by_mm[worst, column] - MISSED_MM) / (FULL_MISS_MM - MISSED_MM)
             yield Flag("missed", low + start, low + stop, _weight(share), text)

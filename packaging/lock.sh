@@ -10,7 +10,7 @@ set -eu
 cd "$(dirname "$0")/.."
 {
   echo "# Exact versions and hashes of what the bundle holds. Made by packaging/lock.sh, which says how it is renewed."
-  uv pip compile pyproject.toml --extra c3d --override packaging/overrides.txt --generate-hashes --upgrade --quiet \
+  uv pip compile pyproject.toml --override packaging/overrides.txt --generate-hashes --upgrade --quiet \
     --python-version 3.11 --python-platform x86_64-manylinux_2_34 \
     --no-emit-index-url --no-emit-find-links --no-annotate --no-header
 } > packaging/requirements.lock.new

@@ -14,6 +14,7 @@ from app.session import Session
 from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
 from app.session.inference import Inference
+from app.session.session import DEFAULT_BELIEVABILITY
 from app.spans.filling import Filling
 from engine.controls import CONTROLS
 from engine.errors import EngineError
@@ -98,11 +99,13 @@ class EditActions(QObject):
 
     def hit_exactly(self) -> None:
         """Let edits hit their curve, believable or not; or let them be believable again."""
-        self._session.set_brush(exact=not self._session.exact)
+        believability = 0.0 if self._session.believability else DEFAULT_BELIEVABILITY
+        self._session.set_brush(believability=believability)
 
-    def rest_follows(self) -> None:
-        """Let controls that nobody asked for follow those that are dragged; or keep them as the take has them."""
-        self._session.set_brush(follow=not self._session.follow)
+    def go_there(self) -> None:
+        """Make the last edit again so that it goes where it was pulled, believable or not."""
+        self._session.set_brush(believability=0.0)
+        self.again()
 
     def again(self) -> None:
         """Take the last edit back and make it again with the settings as they are now; a fill, as it was made."""

@@ -51,7 +51,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("redo", "Redo", "Edit", ("Ctrl+Shift+Z", "Ctrl+Y"), "↷", twin="a command writes a new file"),
     Action("close_here", "Close here", "Edit", ("Shift+C",), twin="retake edit --set 0"),
     Action("hit_exactly", "Hit the curve exactly", "Edit", ("Shift+E",), checkable=True, twin="retake edit --exact"),
-    Action("rest_follows", "Let the rest follow", "Edit", ("Shift+F",), checkable=True, twin="retake edit --follow"),
+    Action("go_there", "Reach it all the same", "Edit", ("Shift+F",), twin="retake edit --exact"),
     Action("again", "Apply to the last edit", "Edit", ("Ctrl+R",), twin="retake edit"),
     Action("cancel", "Drop what is under way", "Edit", ("Escape",), twin="Ctrl+C"),
     Action("wider_brush", "Wider brush", "Edit", ("]",), twin="retake edit --frames"),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
 
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
@@ -28,16 +27,17 @@ def info(
     sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Say what a take holds: length, rate, lost spans, the reach of its controls."""
-    from engine.controls import CONTROLS, measure
+    from engine.controls import ALL_CONTROLS
+    from engine.extended import bundled_face
     from engine.formats import livelink
     from engine.formats.importing import imported, in_words
     from engine.formats.reading import Reading
 
     opened = open_take(take, fps, sides)
-    measured = measure(opened.weights)
+    measured = bundled_face().measure(opened.weights)
     rows = [
         {"name": control.name, "unit": control.unit, "lowest": float(curve.min()), "highest": float(curve.max())}
-        for control, curve in zip(CONTROLS, measured.T, strict=True)
+        for control, curve in zip(ALL_CONTROLS, measured.T, strict=True)
     ]
     rows += [{"name": "lost", "unit": "frames", "lowest": float(a), "highest": float(b)} for a, b in runs(opened.lost)]
     if not as_json:
@@ -58,24 +58,27 @@ def info(
 
 def edit(
     take: TakeFile,
-    control: Annotated[str, typer.Option(help="Which distance, such as lips_vertical.")],
+    control: Annotated[str, typer.Option(help="Which control, such as lips_vertical or brow_inner.")],
     frames: Annotated[str, typer.Option(help="First frame and the one after the last, such as 40:60.")],
     out: Out,
-    set_: Annotated[float | None, typer.Option("--set", help="What it becomes, in mm.")] = None,
-    add: Annotated[float | None, typer.Option("--add", help="What is added, in mm.")] = None,
+    set_: Annotated[float | None, typer.Option("--set", help="What it becomes, in mm or degrees.")] = None,
+    add: Annotated[float | None, typer.Option("--add", help="What is added, in mm or degrees.")] = None,
     scale: Annotated[float | None, typer.Option("--scale", help="What it is multiplied by.")] = None,
-    exact: Annotated[bool, typer.Option("--exact", help="Hit the asked curve, believable or not.")] = False,
-    follow: Annotated[
-        bool, typer.Option("--follow/--keep", help="Whether the other controls go along, or hold it back.")
-    ] = True,
+    believability: Annotated[
+        float,
+        typer.Option(
+            help="1: no further than this take or the recordings go. 0: wherever it is pulled.", min=0.0, max=1.0
+        ),
+    ] = 0.5,
+    exact: Annotated[bool, typer.Option("--exact", help="The same as --believability 0.")] = False,
     fps: Fps = None,
     sides: ReadSides = AUTOMATIC,
     write_sides: WrittenSides = SAME,
 ) -> None:
     """Change one control over a range of frames; the whole face follows."""
-    from engine.controls import bundled_measurer, control_index
+    from engine.controls import ALL_CONTROLS, control_index
     from engine.editing import Change, edit_control, parse_frames
-    from engine.exact import shortfalls
+    from engine.shortfall import shortfalls
 
     kinds: dict[Change, float | None] = {"set": set_, "add": add, "scale": scale}
     given = [(kind, amount) for kind, amount in kinds.items() if amount is not None]
@@ -83,14 +86,15 @@ def edit(
         raise EditError("Say what becomes of the control.", "Give one of --set, --add or --scale.")
     opened = open_take(take, fps, sides)
     column, (start, stop) = control_index(control), parse_frames(frames, opened)
-    patch = edit_control(opened, control, (start, stop), *given[0], exact_curve=exact, follow=follow).settled(opened)
+    believability = 0.0 if exact else believability
+    patch = edit_control(opened, control, (start, stop), *given[0], believability=believability).settled(opened)
     save_take(patch.apply(opened), out, write_sides)
-    measured = bundled_measurer().measure(opened.weights[patch.start : patch.stop])
     reached = patch.reached[start - patch.start : stop - patch.start, column]
-    say(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} mm")
-    asked = np.where(patch.asked != measured, patch.asked, np.nan)
-    for short in shortfalls(patch.weights, asked, bundled_measurer(), exact_curve=exact):
-        say(f"frame {patch.start + short.row}: {short}")
+    unit = ALL_CONTROLS[column].unit
+    say(f"{control} over frames {start}:{stop} is now {reached.min():.2f} to {reached.max():.2f} {unit}")
+    for short in shortfalls(patch.weights, patch.asked, believability=believability, granted=patch.granted):
+        advice = "; --exact goes there all the same" if short.believed else ""
+        say(f"frame {patch.start + short.row}: {short}{advice}")
     say(f"frames outside {patch.start}:{patch.stop} are as they were; wrote {out}")
 
 

@@ -10,10 +10,21 @@ import typer
 from app.printing import say
 from engine.errors import EngineError
 
-NETWORKS = ("regress", "regress_baselines", "regress_study", "clean", "expected", "inpaint", "motion", "controls")
+NETWORKS = (
+    "regress",
+    "regress_baselines",
+    "regress_study",
+    "clean",
+    "expected",
+    "inpaint",
+    "motion",
+    "controls",
+    "prior",
+)
 ELSEWHERE = {  # the others are engine.NAME.train
     "regress_baselines": "engine.evaluate.baselines.train",
     "regress_study": "engine.evaluate.study",
+    "prior": "engine.regress.prior_train",
     "expected": "engine.inpaint.expected_train",
     "motion": "engine.evaluate.latent",
     "controls": "engine.evaluate.regressors",

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QCheckBox, QDoubleSpinBox, QSpinBox
+from PySide6.QtWidgets import QDoubleSpinBox, QMenu, QPushButton, QSpinBox
 
 from app.session import RADII_S, Change, Session
+from app.session.curve_table import CURVES, FIRST_WEIGHT
 from app.widgets.section import Section, slider
+from engine.controls import CONTROLS
 
 STEP_S, SLIDER_STEPS = 0.02, 150  # of the slider: to three seconds, further by typing
 
 
 class BrushSection(Section):
-    """Radius and strength, by slider and by typing, whether the curve is hit exactly and the rest follows."""
+    """Radius, strength and believability, by slider and by typing, and which further curves are shown."""
 
     tools = frozenset({"drag", "draw", "scale"})
 
@@ -27,20 +29,29 @@ class BrushSection(Section):
         self._strength_slider = slider(0, 100)
         self.row("Strength", self.strength)
         self.column.addWidget(self._strength_slider)
-        self.exact = QCheckBox("Hit the curve exactly")
-        self.exact.setToolTip("Plausible, the default, keeps the face believable; exact goes where you drag it.")
-        self.column.addWidget(self.exact)
-        self.follow = QCheckBox("Let the rest follow")
-        self.follow.setToolTip(
-            "Curves that you never touched go along with the one you pull; without it, they hold it back where they were."
+        self.believability = QSpinBox(minimum=0, maximum=100, suffix=" %")
+        self.believability.setToolTip(
+            "100 %: the face does only what this take or the recordings did.  0 %: it goes wherever you drag it."
         )
-        self.column.addWidget(self.follow)
+        self._believability_slider = slider(0, 100)
+        self.row("Believability", self.believability)
+        self.column.addWidget(self._believability_slider)
+        self.more = QPushButton("+ curve")
+        self.more.setToolTip("Show more curves to drag: brows, gaze, the jaw sideways, how high the corners are.")
+        self._menu = QMenu(self.more)
+        self.more.setMenu(self._menu)
+        for column in range(len(CONTROLS), FIRST_WEIGHT):
+            entry = self._menu.addAction(CURVES[column].title[0].upper() + CURVES[column].title[1:])
+            entry.setCheckable(True)
+            entry.setData(column)
+            entry.toggled.connect(lambda on, column=column: self.session.add_lane(column, shown=on))
+        self.column.addWidget(self.more)
         self.radius.valueChanged.connect(self._set_radius)
         self._radius_slider.valueChanged.connect(lambda steps: self._set_radius(steps * STEP_S))
-        self.strength.valueChanged.connect(self._set_strength)
-        self._strength_slider.valueChanged.connect(self._set_strength)
-        self.exact.toggled.connect(self._set_exact)
-        self.follow.toggled.connect(self._set_follow)
+        for widget in (self.strength, self._strength_slider):
+            widget.valueChanged.connect(self._set_strength)
+        for widget in (self.believability, self._believability_slider):
+            widget.valueChanged.connect(self._set_believability)
         session.changed.connect(self._on_change)
         self._show()
 
@@ -50,14 +61,11 @@ class BrushSection(Section):
     def _set_strength(self, percent: int) -> None:
         self.session.set_brush(strength=percent / 100)
 
-    def _set_exact(self, on: bool) -> None:
-        self.session.set_brush(exact=on)
-
-    def _set_follow(self, on: bool) -> None:
-        self.session.set_brush(follow=on)
+    def _set_believability(self, percent: int) -> None:
+        self.session.set_brush(believability=percent / 100)
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.TOOL):
+        if change & (Change.TAKE | Change.TOOL | Change.LANES):
             self._show()
 
     def _show(self) -> None:
@@ -68,9 +76,11 @@ class BrushSection(Section):
             (self._radius_slider, round(radius_s / STEP_S)),
             (self.strength, percent),
             (self._strength_slider, percent),
+            (self.believability, round(100 * self.session.believability)),
+            (self._believability_slider, round(100 * self.session.believability)),
         ):
             with QSignalBlocker(widget):
                 widget.setValue(value)
-        for box, on in ((self.exact, self.session.exact), (self.follow, self.session.follow)):
-            with QSignalBlocker(box):
-                box.setChecked(on)
+        for entry in self._menu.actions():
+            with QSignalBlocker(entry):
+                entry.setChecked(entry.data() in self.session.added)

@@ -11,8 +11,7 @@ from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
 from app.widgets.section import Section, quiet
 from app.widgets.text import Label
-from engine.controls import bundled_measurer
-from engine.exact import shortfalls
+from engine.extended import bundled_face
 from engine.take import Array
 from engine.words import counted
 
@@ -23,6 +22,7 @@ class FactsSection(Section):
     """What is asked and reached, and why not more; how much differs from the original."""
 
     again = Signal()
+    reach = Signal()
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "This edit")
@@ -36,6 +36,12 @@ class FactsSection(Section):
         )
         self.again_button.clicked.connect(self.again)
         self.column.addWidget(self.again_button)
+        self.reach_button = QPushButton("Reach it all the same")
+        self.reach_button.setToolTip(
+            "Make the last edit again with a believability of 0: it goes where it was dragged."
+        )
+        self.reach_button.clicked.connect(self.reach)
+        self.column.addWidget(self.reach_button)
         session.changed.connect(self._on_change)
         session.undo.indexChanged.connect(self._show)
         self._show()
@@ -48,15 +54,15 @@ class FactsSection(Section):
 
     def _tell(self) -> None:
         """Say what came of the edit where the playhead is."""
-        told = self._told_of(self._step())
+        told, held_back = self._told_of(self._step())
         self.told.setText("\n".join(told))
         self.told.setVisible(bool(told))
+        self.reach_button.setVisible(self.session.draft is None and held_back)
 
     def _show(self, *_: int) -> None:
         session, step = self.session, self._step()
-        modes = {"exact": session.exact, "follow": session.follow}
-        made = {name: step.edit.inputs.get(name) for name in modes} if step is not None else modes
-        self.again_button.setVisible(session.draft is None and made != modes)
+        made = step.edit.inputs["believability"] if step is not None else session.believability
+        self.again_button.setVisible(session.draft is None and made != session.believability)
         self._tell()
         self.facts.setText(self._counts())
 
@@ -65,21 +71,18 @@ class FactsSection(Section):
         step = self.session.undo.command(self.session.undo.index() - 1)
         return step if isinstance(step, EditCommand) and step.asked is not None else None
 
-    def _told_of(self, step: EditCommand | None) -> list[str]:
+    def _told_of(self, step: EditCommand | None) -> tuple[list[str], bool]:
+        """Return what to say of the edit on screen, and whether believability alone keeps it from what was asked."""
         session, draft = self.session, self.session.draft
         if draft is not None:
-            rows = slice(draft.start, draft.stop)
-            if draft.asked is draft.reached:
-                return []  # nothing was asked of a control
-            before = session.controls[rows], session.asked[rows]
-            return _told(
-                draft.weights, draft.asked, *before, exact=session.exact, frames=(draft.start, session.playhead)
-            )
+            told = draft.start, draft.weights, draft.asked, draft.granted
+            return _told(*told, believability=session.believability, playhead=session.playhead)
         if step is None or step.asked is None:
-            return []
+            return [], False
         start, asked = step.asked
-        exact = bool(step.edit.inputs.get("exact"))
-        return _told(step.edit.weights, asked, *step.before, exact=exact, frames=(start, session.playhead))
+        now = session.take.weights[start : start + len(asked)]
+        believability = step.edit.inputs["believability"]
+        return _told(start, now, asked, step.granted, believability=believability, playhead=session.playhead)
 
     def _counts(self) -> str:
         session, draft, frames = self.session, self.session.draft, len(self.session.take)
@@ -94,23 +97,33 @@ class FactsSection(Section):
 
 
 def _told(
-    weights: Array, asked: Array, controls: Array, asked_before: Array, *, exact: bool, frames: tuple[int, int]
-) -> list[str]:
-    """Return a line for each control that an edit asked for: (n, 52) weights, (n, 8) mm asked and there before.
+    start: int, weights: Array, asked: Array, granted: Array | None, *, believability: float, playhead: int
+) -> tuple[list[str], bool]:
+    """Return a line for each control that an edit asked for, and whether believability alone holds one of them back.
 
-    `frames` are the first row's and the playhead's. It tells of the row at the playhead, whose face and values are on
-    the screen; where nothing was asked there, of the row that was asked for most, and names its frame. What a row on
-    the way there misses is no answer to what was asked.
+    Weights, (n, 52), and asked values, (n, 16) with NaN, are from frame `start`. A line tells of the row at the
+    playhead, whose face and values are on the screen; where nothing was asked there, of the row that misses most, and
+    names its frame.
     """
-    changed, playhead = asked != controls, frames[1] - frames[0]
+    # here and not above: torch takes a second to load, and the window should be seen first
+    from engine.shortfall import shortfalls
+
+    wanted = ~np.isnan(asked)
+    if not wanted.any():
+        return [], False
+    reached = bundled_face().measure(weights)
+    missing = np.nan_to_num(np.abs(asked - reached))
     lines = []
-    for lane in np.flatnonzero(changed.any(axis=0)).tolist():
-        here = 0 <= playhead < len(asked) and changed[playhead, lane]
-        row = playhead if here else int(np.argmax(np.abs(asked[:, lane] - controls[:, lane])))
-        wanted = np.where(changed[row], asked[row], asked_before[row])[None]
-        found = shortfalls(weights[row : row + 1], wanted, bundled_measurer(), exact_curve=exact)
+    for lane in np.flatnonzero(wanted.any(axis=0)).tolist():
+        here = 0 <= playhead - start < len(asked) and wanted[playhead - start, lane]
+        rows = np.flatnonzero(wanted[:, lane])
+        row = playhead - start if here else int(rows[np.argmax(missing[rows, lane])])
+        one = slice(row, row + 1)
+        found = shortfalls(
+            weights[one], asked[one], believability=believability, granted=None if granted is None else granted[one]
+        )
         short = next((str(each) for each in found if each.control == lane), "")
-        reached = bundled_measurer().measure(weights[row : row + 1])[0, lane]
-        met = f"{CURVES[lane].title} {reached:.1f} mm of {asked[row, lane]:.1f} asked"
-        lines.append(f"{short or met}{'' if here else f' (frame {frames[0] + row:,})'}")
-    return lines
+        met = f"{CURVES[lane].title} {reached[row, lane]:.1f} {CURVES[lane].unit}, as asked"
+        lines.append(f"{short or met}{'' if here else f' (frame {start + row:,})'}")
+    every = shortfalls(weights, asked, believability=believability, granted=granted)
+    return lines, any(each.believed for each in every)

@@ -8,13 +8,13 @@ from PySide6.QtWidgets import QDoubleSpinBox, QPushButton
 from app.session import Change, Session
 from app.session.curve_table import CURVES
 from app.widgets.section import Section
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 
 
 def closes(lane: int) -> bool:
     """Return whether a curve is a distance that can be closed: the lips', or an eye's."""
     curve = CURVES[lane]
-    control = CONTROLS[curve.column] if not curve.is_weight else None
+    control = ALL_CONTROLS[curve.column] if not curve.is_weight else None
     return control is not None and (control.name == "lips_vertical" or control.area == "eyelids")
 
 
@@ -27,7 +27,7 @@ class ValueSection(Section):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "")
-        self.value = QDoubleSpinBox(decimals=1, minimum=0.0, maximum=200.0)
+        self.value = QDoubleSpinBox(decimals=1, minimum=-200.0, maximum=200.0)
         self.value.setKeyboardTracking(False)
         self.value.setToolTip("Type what it should be at the playhead; the brush's radius eases it in and out.")
         self.row("At the playhead", self.value)
@@ -55,6 +55,7 @@ class ValueSection(Section):
         self.title.setText(curve.title if curve.is_weight else curve.title[0].upper() + curve.title[1:])
         self.close_button.setVisible(closes(session.lane))
         self.value.setDecimals(2 if curve.is_weight else 1)
+        self.value.setMinimum(max(-200.0, curve.lowest))
         self.value.setSingleStep(0.05 if curve.is_weight else 0.5)
         self.value.setSuffix("" if curve.is_weight else f" {curve.unit}")
         if not self.value.hasFocus():

@@ -13,6 +13,7 @@ from app.review.reporting import Reporting
 from app.review.section import ReviewSection
 from app.session import Change, Session
 from app.session.commands import EditCommand
+from app.widgets.saving import ask_where
 from engine.project import ENDING
 from engine.review.changes import Change as Difference
 from engine.take import Take
@@ -83,12 +84,11 @@ class ReviewActions(QObject):
 
     def write_report(self) -> None:
         """Choose a file and write what was changed as a page to read anywhere."""
-        name, _ = QFileDialog.getSaveFileName(
-            self._window, "Write a report", f"{Path(self._session.name).stem}_review.html", "Report (*.html)"
-        )
-        if name:
+        suggested = Path(f"{Path(self._session.name).stem}_review.html")
+        path, _ = ask_where(self._window, "Write a report", suggested, {"Report (*.html)": ".html"})
+        if path is not None:
             self.told.emit("Writing the report…")
-            self.reporting.write(self._session.contents(), self._session.name, Path(name))
+            self.reporting.write(self._session.contents(), self._session.name, path)
 
     def _show(self, changes: tuple[Difference, ...]) -> None:
         self.section.show_changes(changes)

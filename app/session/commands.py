@@ -9,7 +9,7 @@ import numpy as np
 from PySide6.QtGui import QUndoCommand
 
 from app.session.session import MEDIA, Session
-from engine.controls import bundled_measurer
+from engine.extended import bundled_face
 from engine.formats.reading import ReadAs
 from engine.project import (
     MARK,
@@ -64,31 +64,31 @@ class EditCommand(QUndoCommand):
         self._session, self._start = session, patch.start
         had = session.asked[rows].copy()
         self._before = (take.weights[rows].copy(), session.controls[rows].copy(), had, take.lost[rows].copy())
-        asked = np.where(patch.asked != self._before[1], patch.asked, had)
+        asked = np.where(np.isnan(patch.asked), had, patch.asked)
         self._after = (patch.weights, patch.reached, asked, patch.lost)
+        self.granted = patch.granted  # what was believable of it; not known of a step from a project file
         self.edit = Edit(kind, title, patch.start, patch.weights, asked, inputs or {}, patch.lost)
 
     @property
     def asked(self) -> tuple[int, Array] | None:
-        """The first frame and the curves, (n, 8) in mm, that this step asked for; None where it asked for no curve."""
-        if "follow" not in self.edit.inputs:
+        """The first frame and the curves, (n, 16) with NaN, that this step asked for; None where it asked for no curve."""
+        if "believability" not in self.edit.inputs:
             return None
-        new = ~((self._after[2] == self._before[2]) | np.isnan(self._after[2]))
-        return self._start, np.where(new, self._after[2], self._before[1])
+        return self._start, np.where(self._after[2] == self._before[2], np.nan, self._after[2])
 
     @property
     def before(self) -> tuple[Array, Array]:
-        """The controls of the rows that were there, (n, 8) in mm, and what had been asked of them."""
+        """The controls of the rows that were there, (n, 16), and what had been asked of them."""
         return self._before[1], self._before[2]
 
     @classmethod
     def restored(cls, session: Session, edit: Edit, before: Before) -> EditCommand:
-        """Return the command of a stored edit, which replaced `before`: (n, 52) weights, (n, 8) asked values, lost frames."""
+        """Return the command of a stored edit, which replaced `before`: (n, 52) weights, (n, 16) asked values, lost frames."""
         command = cls.__new__(cls)
         QUndoCommand.__init__(command, edit.title)
-        measure = bundled_measurer().measure
+        measure = bundled_face().measure
         command._session, command._start, command.edit = session, edit.start, edit
-        command._marks = None
+        command._marks = command.granted = None
         weights, asked, lost = before
         command._before = (weights, measure(weights), asked, lost)
         command._after = (edit.weights, measure(edit.weights), edit.asked, edit.still_lost(weights, lost))

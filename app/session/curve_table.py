@@ -7,9 +7,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from engine.controls import CONTROLS, bundled_measurer
+from engine.controls import ALL_CONTROLS
+from engine.extended import bundled_face
 from engine.take import SHAPES
 
+FARTHEST = 1000.0  # below this no place or angle is
 MOVES_MM = 0.75  # a weight belongs under a control when its full range moves the control by at least this
 
 
@@ -25,7 +27,7 @@ class Curve:
     @property
     def lowest(self) -> float:
         """The least it can be."""
-        return 0.0
+        return -FARTHEST if not self.is_weight and ALL_CONTROLS[self.column].signed else 0.0
 
     @property
     def highest(self) -> float:
@@ -38,19 +40,18 @@ class Curve:
 
 
 CURVES: tuple[Curve, ...] = (
-    *(Curve(control.title, control.unit, column, False) for column, control in enumerate(CONTROLS)),
+    *(Curve(control.title, control.unit, column, False) for column, control in enumerate(ALL_CONTROLS)),
     *(Curve(shape, "", column, True) for column, shape in enumerate(SHAPES)),
 )
-FIRST_WEIGHT = len(CONTROLS)
+FIRST_WEIGHT = len(ALL_CONTROLS)
 
 
-@lru_cache(maxsize=len(CONTROLS))
+@lru_cache(maxsize=len(ALL_CONTROLS))
 def weights_under(control: int) -> tuple[int, ...]:
     """Return the lanes of the weights that move a control, those that move it most first."""
-    measurer = bundled_measurer()
     # measured on a slightly open mouth, since mouthClose does nothing to a closed one
     pose = np.zeros((1, len(SHAPES)))
     pose[0, SHAPES.index("jawOpen")] = 0.2
-    slope = np.abs(measurer.jacobian(pose)[0, control])
+    slope = np.abs(bundled_face().jacobian(pose, np.array([control]))[1][0, 0])
     order = np.argsort(-slope)
     return tuple(FIRST_WEIGHT + int(shape) for shape in order if slope[shape] >= MOVES_MM)

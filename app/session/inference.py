@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from app.background import LatestWins
 from app.session.commands import EditCommand
 from app.session.session import Change, Session
+from app.session.wishes import Wish, Wishes
 from engine.project import Marks
 from engine.take import Array, Take
 
@@ -23,11 +24,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """A verb to carry out on a take whose controls and what was asked of them, (frames, 8), are known.
+    """A verb to carry out on a take whose controls and what was asked of them, (frames, 16), are known.
 
-    `since` is when the user asked.
+    Its result is for the take that is `open`; `since` is when the user asked.
     """
 
+    open: Take
     take: Take
     controls: Array
     asked: Array
@@ -54,7 +56,8 @@ class Inference(QObject):
         self._shown: Request | None = None  # whose result is the draft
         self._kind, self._inputs = "drag", dict[str, Any]()
         self._curves: tuple[int, Array] | None = None  # what was asked of the controls, if anything was
-        self._modes = dict[str, bool]()  # how
+        self._wish: Wish | None = None  # that, with the drags below
+        self._wishes = Wishes(session)
         self._marks: Marks | None = None
         self._title: str | None = None  # set on release: the step to make of the last request's result
         self.since = 0.0  # when the draft on screen was asked for
@@ -78,20 +81,24 @@ class Inference(QObject):
         self._work.submit(None)
 
     def ask(self, start: int, asked: Array) -> None:
-        """Show what the face does for asked curves, (n, 8) in mm, on the frames from `start`."""
-        exact, follow = self._session.exact, self._session.follow
-        if self._submit(lambda dragger: dragger.drag(start, asked, exact_curve=exact, follow=follow)):
-            self._curves, self._modes = (start, asked), {"exact": exact, "follow": follow}
+        """Show what the face does for asked curves, (n, 16), on the frames from `start`; NaN asks for nothing."""
+        wish = self._wishes.asking(start, asked)
+        if self._submit(
+            lambda dragger: dragger.drag(wish.start, wish.asked, believability=wish.believability),
+            of=(wish.take, wish.controls, wish.held),
+        ):
+            self._curves, self._wish = (start, asked), wish
 
     def run(self, verb: Verb) -> None:
         """Show what a verb does; it is called on the background thread."""
         if self._submit(verb):
-            self._curves, self._modes = None, {}
+            self._curves = self._wish = None
 
-    def _submit(self, verb: Verb) -> bool:
+    def _submit(self, verb: Verb, *, of: tuple[Take, Array, Array] | None = None) -> bool:
         if self._title is not None:
             return False  # the edit before is being finished; it takes a few milliseconds
-        self._last = Request(self._session.take, self._session.controls, self._session.asked, verb)
+        session = self._session
+        self._last = Request(session.take, *(of or (session.take, session.controls, session.asked)), verb)
         self._work.submit(self._last)
         return True
 
@@ -109,10 +116,14 @@ class Inference(QObject):
         """
         if self._last is None:
             return
-        self._title, self._kind, self._inputs, self._marks = title, kind, {**(inputs or {}), **self._modes}, marks
+        self._title, self._kind, self._inputs, self._marks = title, kind, {**(inputs or {}), **self._how}, marks
         draft = self._session.draft
         if draft is not None and self._shown is self._last:
             self._commit(draft)
+
+    @property
+    def _how(self) -> dict[str, float]:
+        return {} if self._wish is None else {"believability": self._wish.believability}
 
     def cancel(self) -> None:
         """Forget the edit under way."""
@@ -138,7 +149,7 @@ class Inference(QObject):
         if request is None or patch is None:
             self.ready.emit()
             return
-        if self._last is None or request.take is not self._session.take:
+        if self._last is None or request.open is not self._session.take:
             return  # cancelled, or another take was opened meanwhile
         self.since, self._shown = request.since, request
         self._session.set_draft(patch)
@@ -150,7 +161,10 @@ class Inference(QObject):
         step = EditCommand(
             self._session, patch, title or "edit", kind=self._kind, inputs=self._inputs, marks=self._marks
         )
+        wish, self._wish = self._wish, None
         self._session.undo.push(step)
+        if wish is not None:
+            self._wishes.made(step, wish, start=patch.start, stop=patch.stop)
 
     def _refused(self, request: object, sentence: str, advice: str) -> None:
         self._last = self._title = None
@@ -160,6 +174,7 @@ class Inference(QObject):
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.READING):
             self._last = self._title = None
-        modes = {"exact": self._session.exact, "follow": self._session.follow}
-        if change & Change.TOOL and self.busy and self._curves is not None and modes != self._modes:
+            self._wishes.forget()
+        changed = self._wish is not None and self._wish.believability != self._session.believability
+        if change & Change.TOOL and self.busy and self._curves is not None and changed:
             self.ask(*self._curves)

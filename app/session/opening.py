@@ -12,8 +12,8 @@ from PySide6.QtGui import QUndoCommand
 from app.background import LatestWins
 from app.session.commands import restored
 from app.session.session import Session
-from engine.controls import bundled_measurer
 from engine.errors import EngineError
+from engine.extended import bundled_face
 from engine.formats import livelink_folder, read_take
 from engine.formats.atomic import sweep
 from engine.formats.importing import Imported, imported
@@ -56,7 +56,7 @@ class Opened:
     take : the take as it was recorded
     path : of the file that its frames are in
     imported : what that file says of itself
-    measured : its controls, (frames, 8) mm, and those of the take as edited
+    measured : its controls, (frames, 16), and those of the take as edited
     project : the open project; None where the file is a take
     state, steps : what the edits of a project come to, and their commands
     """
@@ -99,7 +99,7 @@ def opened(session: Session, wish: Wish, report: Callable[[float], None] = lambd
 
 
 def _measured(take: Take) -> Array:
-    controls = bundled_measurer().measure(take.weights)
+    controls = bundled_face().measure(take.weights)
     controls.flags.writeable = False
     return controls
 

@@ -14,7 +14,8 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 from app.session.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from engine import quality
 from engine.character import Character
-from engine.controls import CONTROLS, bundled_measurer
+from engine.controls import CONTROLS
+from engine.extended import bundled_face
 from engine.formats import livelink
 from engine.formats.audio import Audio
 from engine.formats.reading import ReadAs
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from engine.editing import Patch
 
 FIRST_VIEW_S = 16.0
+DEFAULT_BELIEVABILITY = 0.5  # as in engine.regress.plausibility, which takes torch to load
 BRUSH_S, RADII_S = 0.5, (0.01, 10.0)  # of the brush: at first, and from a single frame to a whole phrase
 MAX_OFFSET_S = 36_000.0  # of sound and video
 MEDIA = ("audio", "video")  # the kinds that may be attached
@@ -62,9 +64,9 @@ class Session(QObject):
     recorded : as opened
     original : the same, read as it is read by now
     reading : what that is
-    controls : (frames, 8) mm, measured on `take`
-    original_controls : (frames, 8) mm, measured on `original`
-    asked : (frames, 8) mm, what the edits asked for; NaN where nothing was asked
+    controls : (frames, 16) measured on `take`
+    original_controls : (frames, 16) measured on `original`
+    asked : (frames, 16) what the edits asked for; NaN where nothing was asked
     draft : what the drag under way would do, None between drags
     playhead : frame
     view : first and last frame on screen, fractional
@@ -73,7 +75,8 @@ class Session(QObject):
     expanded : controls whose weights are shown below them
     tool : name of the tool that the mouse works with in the lanes
     radius_s, strength : the brush: to how far on either side it reaches, and its share of what is pulled
-    exact, follow : whether edits hit the curve exactly, and whether controls that nobody asked for follow
+    believability : of edits, 0 where they go wherever curves are pulled, 1 where they do only what was recorded
+    added : controls beyond the eight that have a lane
     shows_removed : whether the Clean tool draws what it would remove
     audio : the recording of the sound, None where there is none, or it is not found
     video : the file of the reference video, likewise
@@ -92,7 +95,7 @@ class Session(QObject):
         super().__init__()
         self.undo = QUndoStack(self)
         self.path: Path | None = None
-        self.strength, self.exact, self.follow, self.tool = 1.0, False, True, "drag"
+        self.strength, self.believability, self.tool = 1.0, DEFAULT_BELIEVABILITY, "drag"
         self.shows_removed = True
         self._restoring = False
         self._open_spans: tuple[Take, Marks, tuple[Span, ...]] | None = None
@@ -101,7 +104,7 @@ class Session(QObject):
         self.undo.cleanChanged.connect(self._on_clean_changed)
 
     def open(self, take: Take, path: Path | None, measured: Array | None = None) -> None:
-        """Replace everything by a take, whose controls may have been measured before, (frames, 8) in mm."""
+        """Replace everything by a take, whose controls may have been measured before, (frames, 16)."""
         self.take = self.original = self.recorded = take
         self.reading = livelink.read_as(take)
         self.path = path
@@ -118,6 +121,7 @@ class Session(QObject):
         self.selection: tuple[int, int] | None = None
         self.lane = 0
         self.expanded: frozenset[int] = frozenset()
+        self.added = frozenset(np.flatnonzero(~np.isnan(self.asked).all(axis=0)).tolist())
         self.radius_s = BRUSH_S
         self.playhead = 0
         self.view = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
@@ -138,7 +142,7 @@ class Session(QObject):
     ) -> None:
         """Replace everything by what a project holds: its edits as `steps`, which come to `state`.
 
-        The controls, (frames, 8) in mm, are `measured` of the original as it is read there, and of that state.
+        The controls, (frames, 16), are `measured` of the original as it is read there, and of that state.
         """
         self.blockSignals(True)
         self._restoring = True
@@ -156,6 +160,7 @@ class Session(QObject):
         self.reading = state.reading or self.reading
         self.visemes = state.visemes
         self.controls = measured[1]
+        self.added = frozenset(np.flatnonzero(~np.isnan(self.asked).all(axis=0)).tolist())
         self.changed.emit(Change.TAKE)
 
     def contents(self) -> Contents:
@@ -248,7 +253,9 @@ class Session(QObject):
     def lanes(self) -> list[int]:
         """The curves on screen from top to bottom, as indices into CURVES."""
         shown: list[int] = []
-        for control in range(len(CONTROLS)):
+        for control in range(FIRST_WEIGHT):
+            if control >= len(CONTROLS) and control not in self.added:
+                continue
             shown.append(control)
             if control in self.expanded:
                 shown += [lane for lane in weights_under(control) if lane not in shown]
@@ -381,6 +388,17 @@ class Session(QObject):
                 self.lane = control
             self.changed.emit(Change.LANES | Change.LANE)
 
+    def add_lane(self, control: int, *, shown: bool = True) -> None:
+        """Give a control beyond the eight a lane, or take it away."""
+        added = self.added | {control} if shown else self.added - {control}
+        if added != self.added and len(CONTROLS) <= control < FIRST_WEIGHT:
+            self.added = added
+            if self.lane not in self.lanes:
+                self.lane = 0
+            elif shown:
+                self.lane = control
+            self.changed.emit(Change.LANES | Change.LANE)
+
     def choose_tool(self, name: str) -> None:
         """Let the mouse work with another tool."""
         if name != self.tool:
@@ -398,23 +416,20 @@ class Session(QObject):
         *,
         radius_s: float | None = None,
         strength: float | None = None,
-        exact: bool | None = None,
-        follow: bool | None = None,
+        believability: float | None = None,
     ) -> None:
         """Change the Drag tool."""
         if radius_s is not None:
             self.radius_s = float(np.clip(radius_s, *RADII_S))
         if strength is not None:
             self.strength = float(np.clip(strength, 0.0, 1.0))
-        if exact is not None:
-            self.exact = exact
-        if follow is not None:
-            self.follow = follow
+        if believability is not None:
+            self.believability = float(np.clip(believability, 0.0, 1.0))
         self.changed.emit(Change.TOOL)
 
 
 def _measured(take: Take) -> Array:
-    controls = bundled_measurer().measure(take.weights)
+    controls = bundled_face().measure(take.weights)
     controls.flags.writeable = False
     return controls
 

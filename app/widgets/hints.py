@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QSizePolicy
 from app.theme import GRID
 from app.widgets.text import Label
 
-BETWEEN = "  ·  "
+BETWEEN = " · "
 
 
 class Hints(Label):

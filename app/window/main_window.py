@@ -226,6 +226,7 @@ class MainWindow(QMainWindow):
         self.value.close_here.connect(self.edits.close_here)
         self.value.typed.connect(self.edits.set_value)
         self.facts.again.connect(self.edits.again)
+        self.facts.reach.connect(self.edits.go_there)
         self.smoothing.moved.connect(self.edits.preview_smoothing)
         self.smoothing.kept.connect(self.edits.smooth)
         self.smoothing.dropped.connect(self.inference.cancel)
@@ -395,8 +396,7 @@ class MainWindow(QMainWindow):
     def _show_tool(self) -> None:
         for name in TOOLS:
             self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
-        self.actions_by_name["hit_exactly"].setChecked(self.session.exact)
-        self.actions_by_name["rest_follows"].setChecked(self.session.follow)
+        self.actions_by_name["hit_exactly"].setChecked(not self.session.believability)
         self.actions_by_name["show_removed"].setChecked(self.session.shows_removed)
 
     def _wear(self, colours: theme.Palette) -> None:

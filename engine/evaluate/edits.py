@@ -1,4 +1,4 @@
-"""A hundred edits that a person would make: what was asked and reached, what else moved, and how like a face it is."""
+"""Edits that a person would make: what was asked and reached, what else moved, and how like a face it is."""
 
 from __future__ import annotations
 
@@ -12,26 +12,27 @@ import numpy as np
 
 from engine.anatomy import impossible
 from engine.character import bundled
-from engine.controls import bundled_measurer
 from engine.corpus import Piece, data_folder, split, whole_faces
-from engine.editing import FEATHER_S, Dragger, warm_up
+from engine.editing import Dragger, warm_up
 from engine.errors import EngineError
 from engine.evaluate.edits_catalogue import EASE_FRAMES, KINDS, SPEAKS_OF, Scripted, scripted
 from engine.evaluate.plausibility import STRETCH, Recorded, recorded
 from engine.evaluate.regress import pieces_to_measure
 from engine.evaluate.regress_edits import PARTS
+from engine.extended import bundled_face
+from engine.regress.plausibility import DEFAULT_BELIEVABILITY
 from engine.take import MODEL_FPS, Array, Take
 
 Row = dict[str, Any]
 Report = Callable[[str], None]
-MODES: dict[str, dict[str, bool]] = {
-    "keep": {"follow": False},
-    "follow": {"follow": True},
-    "keep, exact": {"follow": False, "exact_curve": True},
-    "follow, exact": {"follow": True, "exact_curve": True},
+MODES: dict[str, dict[str, float]] = {
+    "default": {"believability": DEFAULT_BELIEVABILITY},
+    "exact": {"believability": 0.0},
+    "as recorded": {"believability": 1.0},
 }
 UNMOVED_MM = 0.1  # vertices that the shapes an edit speaks of move by less are beside it
 NEAR = 150  # frames on either side whose own motion an edit's ends are held against
+AROUND_S = 0.5  # beyond what is asked, that is looked at
 EVERY = 4  # vertices between those on which motion is measured
 _SURFACE = bundled().deltas[:, np.flatnonzero(np.abs(bundled().deltas).max(axis=(0, 2)) > UNMOVED_MM)[::EVERY]]
 
@@ -54,25 +55,23 @@ class Made:
     @property
     def reach(self) -> slice:
         """The frames that may have moved, with one more at either side."""
-        beyond = EASE_FRAMES + round(FEATHER_S * MODEL_FPS) + 1
+        beyond = EASE_FRAMES + round(AROUND_S * MODEL_FPS) + 1
         return slice(max(0, self.edit.frames[0] - beyond), min(len(self.weights), self.edit.frames[1] + beyond))
 
 
-def make(edit: Scripted, mode: Mapping[str, bool]) -> Made:
-    """Carry out an edit as a person would: one control after another, each dragged on what the last has left."""
+def make(edit: Scripted, mode: Mapping[str, float]) -> Made:
+    """Carry out an edit as a person would: one control after another, all of them asked of the take as it was."""
     take, spent = Take(weights=edit.piece.weights, fps=MODEL_FPS), []
-    asked_before = np.full_like(edit.asked, np.nan)
+    dragger, wish = Dragger(take), np.full_like(edit.asked, np.nan)
+    patch = None
     for column in np.flatnonzero(~np.isnan(edit.asked).all(axis=0)):
-        dragger = Dragger(take, asked=asked_before)
-        rows = np.flatnonzero(~np.isnan(edit.asked[:, column]))
-        asked = dragger.controls[rows].copy()
-        asked[:, column] = edit.asked[rows, column]
+        wish[:, column] = edit.asked[:, column]
+        rows = np.flatnonzero(~np.isnan(wish).all(axis=1))
         began = time.perf_counter()
-        patch = dragger.drag(int(rows[0]), asked, **mode)
+        patch = dragger.drag(int(rows[0]), wish[rows[0] : rows[-1] + 1], **mode)
         spent.append((time.perf_counter() - began) * 1e3)
-        take = patch.apply(take)
-        asked_before[:, column] = edit.asked[:, column]
-    return Made(edit, np.asarray(take.weights), tuple(spent))
+    assert patch is not None
+    return Made(edit, np.asarray(patch.apply(take).weights), tuple(spent))
 
 
 def table(data: Path | None, report: Report) -> list[Row]:
@@ -82,7 +81,9 @@ def table(data: Path | None, report: Report) -> list[Row]:
     the edit's frames, `missed_peak_mm` the same where most was asked, `reached` which share of it was reached there.
     `beside_*` is what moved that the edit does not speak of: mean change of a weight, mean and largest move of a vertex.
     `step_mm` is the largest move of the surface from frame to frame where the edit comes and goes, `step_before_mm`
-    there before, `step_take_mm` anywhere within some seconds of it. `impossible` is the share of frames that hold a pair of shapes
+    there before, `step_take_mm` anywhere within some seconds of it. `notch_mm` is the furthest that the surface leaves the
+    middle of the frames beside at the asked frames, `notch_take_mm` what the take does so in one frame of a hundred.
+    `impossible` is the share of frames that hold a pair of shapes
     that exclude each other, less that before; `unlike_mm` how far the motion is from the nearest stretch of the training
     takes, `unlike_before_mm` how far it was (null where these are not at hand). `ms` is the mean time of a drag.
     """
@@ -133,7 +134,7 @@ def _figures(made: Made, banks: Mapping[str, Recorded]) -> Row:
 
 def _reached(made: Made) -> Row:
     frames = slice(*made.edit.frames)
-    before, after = (bundled_measurer().measure(one[frames]) for one in (made.edit.piece.weights, made.weights))
+    before, after = (bundled_face().measure(one[frames]) for one in (made.edit.piece.weights, made.weights))
     asked = made.edit.asked[frames]
     columns = ~np.isnan(asked).all(axis=0)
     change, missing = (asked - before)[:, columns], (after - asked)[:, columns]
@@ -169,7 +170,15 @@ def _steps(made: Made) -> Row:
         "step_mm": float(after[at_ends].max()),
         "step_before_mm": float(before[at_ends].max()),
         "step_take_mm": float(before.max()),
+        "notch_mm": float(_notch_mm(made.weights[near])[first - 1 : last - 1].max()),
+        "notch_take_mm": float(np.quantile(_notch_mm(made.edit.piece.weights), 0.99)),
     }
+
+
+def _notch_mm(weights: Array) -> Array:
+    """Return how far the surface leaves the middle of the frames beside, at most, (frames - 2,) in mm."""
+    bent = np.diff(weights, n=2, axis=0) @ _SURFACE.reshape(len(_SURFACE), -1) / 2
+    return np.asarray(np.linalg.norm(bent.reshape(len(bent), -1, 3), axis=-1).max(axis=1))
 
 
 def _step_mm(weights: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A hundred edits that a person would make: twenty kinds, each at the places of a take that call for it."""
+"""Edits that a person would make: thirty kinds, each at the places of a take that call for it."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import find_peaks
 
-from engine.controls import CONTROL_INDEX, bundled_measurer
+from engine.controls import ALL_CONTROLS, ALL_INDEX
 from engine.corpus import Piece
 from engine.easing import ease
+from engine.extended import bundled_face
 from engine.regress.areas import AREAS
 from engine.take import SHAPES, Array, Mask, runs
 
@@ -20,9 +21,11 @@ ROOM = 24  # frames of the piece beyond an edit, so that what eases out can be s
 PLACES = 5  # of each kind
 MOUTH = AREAS[0].controls
 LIDS = ("eyelid_right", "eyelid_left")
+HEIGHTS = ("corner_height_right", "corner_height_left")
+BROWS = ("brow_right", "brow_left")
 
 Frames = tuple[int, int]  # half-open
-Rule = Callable[[Array], list[Frames]]  # control curves, (frames, 8) in mm, to places that fit
+Rule = Callable[[Array], list[Frames]]  # control curves, (frames, 16) in mm, to places that fit
 Wanted = Callable[[Array], Array]  # a stretch of one control, (n,) in mm, to what it shall be
 
 
@@ -37,6 +40,8 @@ SPEAKS_OF: dict[str, Mask] = {
     "left corner": _named(*_LOWER, but="Right") | _named("mouthRight", "jawRight"),
     "eyes": _named(*_LID_SHAPES),
     "right eye": _named(*_LID_SHAPES, but="Left"),
+    "brows of the eyes": _named("brow"),
+    "gaze of the eyes": _named("eyeLook"),
 }
 
 
@@ -65,7 +70,7 @@ class Kind:
 
 @dataclass(frozen=True, eq=False)
 class Scripted:
-    """One edit: `asked`, (frames of the piece, 8) in mm, is NaN wherever nothing is asked."""
+    """One edit: `asked`, (frames of the piece, 16) in mm, is NaN wherever nothing is asked."""
 
     kind: Kind
     piece: Piece
@@ -110,7 +115,7 @@ def _around(frames: npt.NDArray[np.int64], half: int) -> list[Frames]:
 
 def _vowels(controls: Array) -> list[Frames]:
     """Return where the mouth opens most, for a quarter of a second."""
-    lips = controls[:, CONTROL_INDEX["lips_vertical"]]
+    lips = controls[:, ALL_INDEX["lips_vertical"]]
     return _around(find_peaks(lips, height=8.0, prominence=4.0)[0], 3)
 
 
@@ -118,14 +123,14 @@ def _weak_closures(half: int) -> Rule:
     """Return where lips come near each other between two openings and do not meet: a bilabial that the tracker missed."""
 
     def rule(controls: Array) -> list[Frames]:
-        lips = controls[:, CONTROL_INDEX["lips_vertical"]]
+        lips = controls[:, ALL_INDEX["lips_vertical"]]
         return _around(find_peaks(-lips, height=(-8.0, -1.5), prominence=3.0)[0], half)
 
     return rule
 
 
 def _stretches(frames: int, kept: Callable[[Array], bool]) -> Rule:
-    """Return stretches of so many frames, one after another, whose controls, (frames, 8) in mm, are of a sort."""
+    """Return stretches of so many frames, one after another, whose controls, (frames, 16) in mm, are of a sort."""
 
     def rule(controls: Array) -> list[Frames]:
         starts = range(0, len(controls) - frames + 1, frames)
@@ -135,16 +140,16 @@ def _stretches(frames: int, kept: Callable[[Array], bool]) -> Rule:
 
 
 def _speaks(controls: Array) -> bool:
-    lips = controls[:, CONTROL_INDEX["lips_vertical"]]
+    lips = controls[:, ALL_INDEX["lips_vertical"]]
     return bool(np.ptp(lips) > 6.0 and np.abs(np.diff(lips)).mean() > 0.4)
 
 
 def _rests(controls: Array) -> bool:
-    return bool(np.ptp(controls[:, [CONTROL_INDEX[name] for name in MOUTH]], axis=0).max() < 4.0)
+    return bool(np.ptp(controls[:, [ALL_INDEX[name] for name in MOUTH]], axis=0).max() < 4.0)
 
 
 def _looks(controls: Array) -> bool:
-    lids = controls[:, [CONTROL_INDEX[name] for name in LIDS]]
+    lids = controls[:, [ALL_INDEX[name] for name in LIDS]]
     return bool(lids.min() > 7.0)
 
 
@@ -152,7 +157,7 @@ def _blinks(half: int) -> Rule:
     """Return the frames of both lids' blinks and some on either side."""
 
     def rule(controls: Array) -> list[Frames]:
-        lids = controls[:, [CONTROL_INDEX[name] for name in LIDS]].max(axis=1)
+        lids = controls[:, [ALL_INDEX[name] for name in LIDS]].max(axis=1)
         return [(start - half, stop + half) for start, stop in runs(lids < 5.0) if stop - start <= 9]
 
     return rule
@@ -185,6 +190,16 @@ KINDS: tuple[Kind, ...] = (
     Kind("wide eyes", "eyes", _stretches(30, _looks), _all(LIDS, _by(1.0))),
     Kind("squint", "eyes", _stretches(30, _looks), _all(LIDS, _times(0.65))),
     Kind("drowsy eyes", "eyes", _stretches(60, _looks), _all(LIDS, _times(0.4))),
+    Kind("corners up", "mouth", _stretches(30, _rests), _all(HEIGHTS, _by(3.0))),
+    Kind("one corner up", "left corner", _stretches(30, _rests), {"corner_height_left": _by(3.0)}),
+    Kind("corners down", "mouth", _stretches(30, _rests), _all(HEIGHTS, _by(-3.0))),
+    Kind("smile up and out", "mouth", _stretches(30, _rests), _all(HEIGHTS, _by(2.5)) | {"lips_horizontal": _by(5.0)}),
+    Kind("raise both brows", "brows of the eyes", _stretches(30, _looks), _all(BROWS, _by(2.0))),
+    Kind("raise one brow", "brows of the eyes", _stretches(30, _looks), {"brow_left": _by(2.0)}),
+    Kind("raise the inner brows", "brows of the eyes", _stretches(30, _looks), {"brow_inner": _by(2.0)}),
+    Kind("jaw to one side", "mouth", _stretches(20, _rests), {"jaw_sideways": _by(2.0)}),
+    Kind("look aside", "gaze of the eyes", _stretches(30, _looks), {"gaze_horizontal": _by(10.0)}),
+    Kind("look up", "gaze of the eyes", _stretches(30, _looks), {"gaze_vertical": _by(6.0)}),
 )
 
 
@@ -197,7 +212,7 @@ def _fitting(kind: Kind, pieces: Sequence[Piece]) -> list[tuple[Kind, Piece, Fra
     found = []
     for piece in pieces:
         if piece.whole_face or not kind.needs_whole_face:
-            places = kind.places(bundled_measurer().measure(piece.weights))
+            places = kind.places(bundled_face().measure(piece.weights))
             fits = [(a, b) for a, b in places if a >= ROOM and b <= len(piece.weights) - ROOM]
             found += [(kind, piece, frames) for frames in fits]
     return found
@@ -210,16 +225,16 @@ def _spread(fitting: Sequence[tuple[Kind, Piece, Frames]]) -> list[Scripted]:
 
 
 def _asked(kind: Kind, piece: Piece, frames: Frames) -> Array:
-    """Return what is asked, (frames of the piece, 8) in mm, eased in and out beside the frames; NaN where nothing is."""
-    controls = bundled_measurer().measure(piece.weights)
+    """Return what is asked, (frames of the piece, 16) in mm, eased in and out beside the frames; NaN where nothing is."""
+    controls = bundled_face().measure(piece.weights)
     asked = np.full_like(controls, np.nan)
     first, last = frames[0] - EASE_FRAMES, frames[1] + EASE_FRAMES
     frame = np.arange(first, last)
     away = np.maximum(0, np.maximum(frames[0] - frame, frame - frames[1] + 1)) / (EASE_FRAMES + 1)
     for name, wanted in kind.wanted.items():
-        curve = controls[:, CONTROL_INDEX[name]]
+        curve = controls[:, ALL_INDEX[name]]
         inside = wanted(curve[slice(*frames)])
         held = np.pad(inside, EASE_FRAMES, mode="edge")
         bent = curve[first:last] + ease(1 - away) * (held - curve[first:last])
-        asked[first:last, CONTROL_INDEX[name]] = np.maximum(bent, 0.0)
+        asked[first:last, ALL_INDEX[name]] = bent if ALL_CONTROLS[ALL_INDEX[name]].signed else np.maximum(bent, 0.0)
     return asked

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from engine.character import bundled
-from engine.controls import CONTROLS, bundled_measurer
+from engine.controls import ALL_CONTROLS
 from engine.errors import EngineError
 from engine.evaluate.edits import Made
 from engine.evaluate.edits_catalogue import KINDS, PLACES
+from engine.extended import bundled_face
 from engine.take import Array
 
 KINDS_PER_SHEET = 5
@@ -69,11 +70,11 @@ def _pair(axis: Any, made: Made) -> None:
 def _peak(made: Made) -> tuple[int, str]:
     """Return the frame where most is asked, and the control, what it was, what was asked and reached there."""
     frames = slice(*made.edit.frames)
-    before, after = (bundled_measurer().measure(one[frames]) for one in (made.edit.piece.weights, made.weights))
+    before, after = (bundled_face().measure(one[frames]) for one in (made.edit.piece.weights, made.weights))
     change = np.nan_to_num(np.abs(made.edit.asked[frames] - before))
     row, column = (int(index) for index in np.unravel_index(np.argmax(change), change.shape))
     asked = made.edit.asked[frames][row, column]
-    told = f"{CONTROLS[column].title} {before[row, column]:.1f} → {asked:.1f}, got {after[row, column]:.1f} mm"
+    told = f"{ALL_CONTROLS[column].title} {before[row, column]:.1f} → {asked:.1f}, got {after[row, column]:.1f} mm"
     return made.edit.frames[0] + row, told
 
 

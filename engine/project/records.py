@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.formats.reading import ReadAs, Reading
 from engine.take import SHAPES, Array, Mask, Take
 
@@ -30,7 +30,7 @@ class Edit:
     title : what the user did, as the Undo menu shows it
     start : first frame
     weights : (frames, 52) what the edit put in place; no frames where it changed none
-    asked : (frames, 8) mm, what had been asked for up to and including this edit; NaN where nothing was
+    asked : (frames, 16), what had been asked for up to and including this edit; NaN where nothing was
     inputs : what the edit was made from, as JSON can hold it, so that it can be run again
     lost : (frames,) bool, which of its frames are lost after it; None in projects that did not say so yet
     """
@@ -137,13 +137,13 @@ def marks_of(stored: Mapping[str, Any]) -> Marks:
 
 def mark_edit(title: str, before: Marks, after: Marks) -> Edit:
     """Return the edit that changes marks and no frame."""
-    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
+    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(ALL_CONTROLS)))
     return Edit(MARK, title, 0, *rows, {"before": asdict(before), "after": asdict(after)})
 
 
 def reading_edit(title: str, before: ReadAs, after: ReadAs) -> Edit:
     """Return the edit that changes how the take is read and no frame."""
-    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
+    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(ALL_CONTROLS)))
     return Edit(READING, title, 0, *rows, {"before": asdict(before), "after": asdict(after)})
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.formats import livelink
 from engine.formats.livelink_sides import exchange
 from engine.formats.reading import ReadAs
@@ -26,8 +26,8 @@ class Replayed:
     Attributes
     ----------
     take : with the edits up to the position
-    asked : (frames, 8) mm, NaN where nothing was asked
-    before : of each edit the (frames, 52) weights, (frames, 8) asked values and (frames,) lost frames that it found
+    asked : (frames, 16), NaN where nothing was asked
+    before : of each edit the (frames, 52) weights, (frames, 16) asked values and (frames,) lost frames that it found
     visemes : the lane in effect, if there is one
     changes : of each edit what it did to that lane, None where it did nothing
     original : the take as it was opened, read as it is read by now
@@ -47,7 +47,7 @@ def replay(contents: Contents) -> Replayed:
     """Return the state at the project's position, bit for bit as it was left."""
     original = contents.original
     weights, lost = original.weights.copy(), original.lost.copy()
-    asked = np.full((len(weights), len(CONTROLS)), np.nan)
+    asked = np.full((len(weights), len(ALL_CONTROLS)), np.nan)
     before: list[Before] = []
     shown = (weights.copy(), asked.copy(), lost.copy())
     reading: ReadAs | None = None

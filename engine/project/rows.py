@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.controls import CONTROL_INDEX, CONTROLS
+from engine.controls import ALL_CONTROLS, ALL_INDEX
 from engine.errors import EngineError
 from engine.formats.livelink import MAX_COLUMNS
 from engine.formats.livelink_origin import Origin
@@ -81,7 +81,7 @@ def read_summary(database: sqlite3.Connection) -> Summary:
 def write_edits(database: sqlite3.Connection, first: int, edits: Iterable[Edit]) -> None:
     """Let these edits follow the first so many, in place of what came after."""
     database.execute("DELETE FROM edits WHERE place >= ?", (first,))
-    names = json.dumps([control.name for control in CONTROLS])
+    names = json.dumps([control.name for control in ALL_CONTROLS])
     for place, edit in enumerate(edits, first):
         inputs = json.dumps(dict(edit.inputs), default=_plain)
         lost = None if edit.lost is None else pack(edit.lost)
@@ -161,12 +161,12 @@ def _read_asked(blob: object, names: tuple[str, ...], frames: int, budget: Budge
     """Return asked values in today's columns: a control that is new since has NaN, one that is gone is left out."""
     stored = unpack(blob, (frames, len(names)), "<f8", budget)
     require(not np.isinf(stored).any(), "an edit asks for a value that is not finite")
-    if names == tuple(CONTROL_INDEX):
+    if names == tuple(ALL_INDEX):
         return np.asarray(stored, np.float64)
-    asked = np.full((frames, len(CONTROLS)), np.nan)
+    asked = np.full((frames, len(ALL_CONTROLS)), np.nan)
     for column, name in enumerate(names):
-        if name in CONTROL_INDEX:
-            asked[:, CONTROL_INDEX[name]] = stored[:, column]
+        if name in ALL_INDEX:
+            asked[:, ALL_INDEX[name]] = stored[:, column]
     return asked
 
 

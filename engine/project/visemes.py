@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.errors import EditError
 from engine.project.records import VISEMES, Edit
 from engine.speech.lane import VisemeLane
@@ -66,7 +66,7 @@ def change_between(before: VisemeLane | None, after: VisemeLane | None) -> Visem
 
 def viseme_edit(title: str, change: VisemeChange) -> Edit:
     """Return the edit that changes the visemes and no frame."""
-    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(CONTROLS)))
+    rows = np.zeros((0, len(SHAPES))), np.zeros((0, len(ALL_CONTROLS)))
     head = change.becomes
     fresh = head is not None and (change.was is None or head.originals is not change.was.originals)
     inputs: dict[str, Any] = {

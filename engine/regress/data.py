@@ -11,9 +11,8 @@ import torch
 from scipy.spatial import cKDTree
 from torch import Tensor
 
-from engine.controls import bundled_measurer
 from engine.corpus import Piece, whole_faces
-from engine.extended import bundled_extended
+from engine.extended import bundled_face
 from engine.models.windows import windows
 from engine.performance.augment import Levers, augment
 from engine.performance.corpus import synthetic_performances
@@ -42,7 +41,7 @@ def cut(pieces: Sequence[Array], *, length: int, overlap: float) -> Windows:
     """Cut pieces, (frames, 52) each, into windows and measure their controls."""
     weights = np.concatenate([windows(piece, length=length, overlap=overlap) for piece in pieces])
     flat = weights.reshape(-1, len(SHAPES))
-    measured = np.concatenate([bundled_measurer().measure(flat), bundled_extended().measure(flat)], axis=1)
+    measured = bundled_face().measure(flat)
     controls = measured.reshape(*weights.shape[:2], -1)
     return Windows(*(torch.tensor(x.transpose(0, 2, 1), dtype=torch.float32) for x in (controls, weights)))
 

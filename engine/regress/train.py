@@ -21,7 +21,7 @@ from torch import Tensor
 
 from engine.controls import CONTROLS, bundled_measurer
 from engine.corpus import Piece, recorded_seconds, split, whole_faces
-from engine.extended import bundled_extended
+from engine.extended import bundled_face
 from engine.models.checkpoint import MODELS, Card, commit, save_card, save_model
 from engine.models.distances import Distances
 from engine.performance.augment import Levers, mirrored
@@ -146,7 +146,7 @@ class AreaTrainer:
         self.network = AreaNetwork(regressor, UNetConfig(outputs, outputs, widths))
         self._begin(material.first)
         neutral = np.zeros((1, len(SHAPES)))
-        rest = np.concatenate([bundled_measurer().measure(neutral), bundled_extended().measure(neutral)], axis=1)
+        rest = bundled_face().measure(neutral)
         self._rest = torch.tensor(rest[0, area.control_columns], dtype=torch.float32)[None, :, None]
         # What a face can do is what was recorded, not what augmentation made of it.
         recorded = cut([*material.pieces, *map(mirrored, material.pieces)], length=settings.window, overlap=0.0)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.signal import correlate
 
 from engine.errors import EditError
 from engine.models.resample import interpolate
@@ -144,6 +143,8 @@ def _best_lag(before: Take, after: Take) -> float:
     ``r(l) = sum_t a(t + l) b(t) / sqrt(sum_t a(t + l)^2 sum_t b(t)^2)`` over the frames both have at lag l, with each
     curve's mean over its whole take removed; 0 where nothing moves alike.
     """
+    from scipy.signal import correlate  # a third of a second to load, and the window should be seen first
+
     a, b = _curves(before), _curves(after)
     a, b = a - a.mean(axis=0), b - b.mean(axis=0)
     lags = np.arange(-(len(b) - 1), len(a))

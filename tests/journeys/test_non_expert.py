@@ -14,7 +14,8 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox
 from pytestqt.qtbot import QtBot
 
 from app.window.main_window import MainWindow
-from engine.controls import CONTROL_INDEX, measure
+from engine.controls import CONTROL_INDEX
+from engine.extended import bundled_face
 from engine.formats import read_take
 from engine.performance import demo
 from tests.engine.project.projects import same
@@ -72,7 +73,7 @@ def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
     assert (after[2] != before[2]).mean() > 0.005
     far = np.abs(np.arange(len(session.take)) - frame) > 60
     np.testing.assert_array_equal(after[0][far], before[0][far])
-    np.testing.assert_allclose(session.controls, measure(session.take.weights), atol=1e-9)
+    np.testing.assert_allclose(session.controls, bundled_face().measure(session.take.weights), atol=1e-9)
 
     QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     settled(qtbot, window)

@@ -57,7 +57,7 @@ def test_a_raw_weight_is_dragged_under_its_control(qtbot: QtBot, window: MainWin
 
 def test_a_sketch_becomes_the_curve(qtbot: QtBot, window: MainWindow) -> None:
     QTest.keyClick(window, Qt.Key.Key_D)
-    window.session.set_brush(exact=True)
+    window.session.set_brush(believability=0.0)
     points = [at(window, LIPS, frame, value) for frame, value in ((140, 2.0), (150, 8.0), (160, 8.0), (170, 2.0))]
     gesture(qtbot, window, *points)
     reached = window.session.controls[:, LIPS]
@@ -67,7 +67,7 @@ def test_a_sketch_becomes_the_curve(qtbot: QtBot, window: MainWindow) -> None:
 
 def test_a_box_is_scaled_in_value_and_in_time(qtbot: QtBot, window: MainWindow) -> None:
     QTest.keyClick(window, Qt.Key.Key_S)
-    window.session.set_brush(exact=True)
+    window.session.set_brush(believability=0.0)
     area, session = window.curves.viewport(), window.session
     QTest.mousePress(area, LEFT, PLAIN, at(window, LIPS, 70, 5.0))
     QTest.mouseMove(area, at(window, LIPS, 99, 5.0))
@@ -127,7 +127,7 @@ def test_smoothing_is_previewed_then_kept_or_dropped(qtbot: QtBot, window: MainW
 
 def test_a_typed_value_is_reached(qtbot: QtBot, window: MainWindow) -> None:
     window.session.move_playhead(160)
-    window.session.set_brush(exact=True)
+    window.session.set_brush(believability=0.0)
     window.value.value.setFocus()
     window.value.value.selectAll()
     QTest.keyClicks(window.value.value, "7.5")

@@ -142,7 +142,7 @@ def test_exporting_onto_the_recording_asks(
     choosing(monkeypatch, take)
     asked = answering(monkeypatch, answer)
     written: list[Path] = []
-    monkeypatch.setattr("app.actions.file.write_take", lambda _, path: written.append(path))
+    monkeypatch.setattr("app.actions.file.write_take", lambda _, path, *__: written.append(path))
     window.files.export()
     assert asked == ["take.csv is the take as it was recorded. Replace it?"]
     assert written == ([take] if answer == Answer.Yes else []) and take.read_bytes() == before

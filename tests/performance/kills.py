@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.project import Contents, Edit, Project, create, replay
 from engine.take import SHAPES, Take
 from tests.performance import sessions
@@ -76,10 +76,10 @@ def push(session: Session, rng: np.random.Generator, tell: Connection) -> None:
 
     now = session.contents()
     start, length = int(rng.integers(0, FRAMES - 200)), int(rng.integers(1, 200))
-    weights, asked = rng.random((length, len(SHAPES))), rng.random((length, len(CONTROLS)))
+    weights, asked = rng.random((length, len(SHAPES))), rng.random((length, len(ALL_CONTROLS)))
     lost = np.zeros(length, bool)
     patch = SimpleNamespace(  # a Patch would load torch, hundreds of times
-        start=start, stop=start + length, weights=weights, asked=asked, reached=asked, lost=lost
+        start=start, stop=start + length, weights=weights, asked=asked, reached=asked, granted=None, lost=lost
     )
     patch.settled = lambda _: patch
     command = EditCommand(session, patch, f"edit {session.undo.count()}")
@@ -110,7 +110,7 @@ def save_until_killed(folder: Path, seed: int, tell: Connection) -> None:
     tell.send(("kept", fingerprint(contents)))
     project = create(folder / "work.retake", contents)
     while True:
-        rows = rng.random((60, len(SHAPES))), np.full((60, len(CONTROLS)), np.nan)
+        rows = rng.random((60, len(SHAPES))), np.full((60, len(ALL_CONTROLS)), np.nan)
         edits = (*contents.edits, Edit("drag", "an edit", int(rng.integers(0, FRAMES - 60)), *rows))
         contents = Contents(contents.original, edits, len(edits))
         tell.send(("doing", fingerprint(contents)))

@@ -8,7 +8,7 @@ import pytest
 
 from app import cli
 from engine import project
-from engine.controls import CONTROL_INDEX, measure
+from engine.controls import ALL_CONTROLS, CONTROL_INDEX, measure
 from engine.formats import read_take, write_take
 from engine.performance import demo
 from engine.project import Contents, Edit
@@ -51,7 +51,7 @@ def test_what_should_meet_is_told_by_visemes_and_by_the_original(
 
 def test_a_project_tells_what_was_asked_and_not_reached(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     take = read_take(demo.BUNDLED)
-    asked = np.full((5, 8), np.nan)
+    asked = np.full((5, len(ALL_CONTROLS)), np.nan)
     asked[:, 0] = 60.0
     edit = Edit("drag", "drag lips apart", 100, take.weights[100:105], asked)
     project.create(tmp_path / "a.retake", Contents(take, (edit,), 1)).close()

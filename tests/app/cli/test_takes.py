@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from app import cli
-from engine.controls import measure
+from engine.controls import ALL_INDEX, measure
+from engine.extended import bundled_face
 from engine.formats import read_take, write_take
 from engine.performance import demo
 from engine.take import Take
@@ -36,13 +37,25 @@ def test_edit_writes_a_take_with_the_lips_closed(tmp_path: Path, capsys: pytest.
 
 
 def test_edit_says_what_could_not_be_reached_and_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    out = [tmp_path / name for name in ("follow.csv", "keep.csv")]
+    out = [tmp_path / name for name in ("exact.csv", "as_recorded.csv")]
     arguments = ["edit", str(demo.BUNDLED), "--control", "lips_vertical", "--frames", "70:90", "--set"]
     assert cli.run([*arguments, "150", "--exact", "-o", str(out[0])]) == 0
     assert "of 150.0 asked: " in (told := capsys.readouterr().out) and "limit" in told
-    for path, option in zip(out, ("--follow", "--keep"), strict=True):
-        assert cli.run([*arguments, "12", option, "-o", str(path)]) == 0
-    assert np.abs(read_take(out[0]).weights - read_take(out[1]).weights).max() > 0.01
+    assert cli.run([*arguments, "80", "--believability", "1", "-o", str(out[1])]) == 0
+    assert "recordings go further; --exact goes there" in capsys.readouterr().out
+    lips = [measure(read_take(path).weights)[70:90, 0].max() for path in out]
+    assert lips[0] > lips[1] + 2.0
+
+
+@pytest.mark.parametrize("control", ["brow_inner", "corner_height_left", "gaze_horizontal", "jaw_sideways"])
+def test_edit_changes_further_controls(tmp_path: Path, control: str, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out.csv"
+    arguments = ["edit", str(demo.BUNDLED), "--control", control, "--frames", "70:90", "--add", "2", "-o", str(out)]
+    assert cli.run(arguments) == 0
+    unit = "degrees" if control.startswith("gaze") else "mm"
+    assert f"{unit}\n" in capsys.readouterr().out
+    before, after = (bundled_face().measure(read_take(path).weights) for path in (demo.BUNDLED, out))
+    np.testing.assert_allclose((after - before)[70:90, ALL_INDEX[control]], 2.0, atol=0.05)
 
 
 def test_info_prints_one_json_object(capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,14 +14,16 @@ from app.session.commands import EditCommand, MarkCommand
 from app.session.keeper import Keeper
 from app.session.opening import Wish, opened
 from engine import project
-from engine.controls import measure
 from engine.editing import Patch
 from engine.errors import EngineError
+from engine.extended import bundled_face
 from engine.project import Marks, Note, Pin, Project, Span
 from engine.take import SHAPES, Take
 from tests.performance import kills
 
 Made = Callable[..., Keeper]
+
+measure = bundled_face().measure
 
 
 @pytest.fixture

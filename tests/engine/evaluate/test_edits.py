@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine.controls import CONTROL_INDEX, measure
+from engine.controls import ALL_INDEX
 from engine.corpus import Piece, data_folder, split
 from engine.evaluate import edits
 from engine.evaluate.edits_catalogue import KINDS, PLACES, ROOM, SPEAKS_OF, Scripted, scripted
+from engine.extended import bundled_face
 from engine.performance.corpus import synthetic_performances
 
 
@@ -22,9 +23,9 @@ def catalogue(pieces: list[Piece]) -> list[Scripted]:
     return scripted(pieces)
 
 
-def test_a_hundred_edits_on_the_test_takes(real_take_path: Path) -> None:
-    assert len(KINDS) * PLACES == 100
-    assert len(scripted(split(data_folder())[2])) == 100
+def test_there_are_places_for_every_edit_on_the_test_takes(real_take_path: Path) -> None:
+    assert len(KINDS) * PLACES == 150
+    assert len(scripted(split(data_folder())[2])) == 150
 
 
 def test_every_edit_asks_for_a_change_where_it_says_and_nowhere_else(catalogue: list[Scripted]) -> None:
@@ -32,11 +33,11 @@ def test_every_edit_asks_for_a_change_where_it_says_and_nowhere_else(catalogue: 
     for edit in catalogue:
         start, stop = edit.frames
         assert start >= ROOM and stop <= len(edit.asked) - ROOM
-        columns = [CONTROL_INDEX[name] for name in edit.kind.wanted]
+        columns = [ALL_INDEX[name] for name in edit.kind.wanted]
         asked = ~np.isnan(edit.asked)
         assert asked[start:stop][:, columns].all()
         assert not np.delete(asked, columns, axis=1).any() and not asked[: start - ROOM].any()
-        assert np.abs(edit.asked - measure(edit.piece.weights))[start:stop][:, columns].max() > 0.2
+        assert np.abs(edit.asked - bundled_face().measure(edit.piece.weights))[start:stop][:, columns].max() > 0.2
 
 
 def test_the_same_takes_give_the_same_edits(pieces: list[Piece], catalogue: list[Scripted]) -> None:
@@ -63,4 +64,4 @@ def test_what_moves_beside_an_edit_is_counted(catalogue: list[Scripted]) -> None
 def test_an_edit_made_in_every_way_is_near_what_was_asked_where_that_is_exact(catalogue: list[Scripted]) -> None:
     edit = next(edit for edit in catalogue if edit.kind.name == "smile while speaking")
     missed = {name: edits._reached(edits.make(edit, mode))["missed_mm"] for name, mode in edits.MODES.items()}
-    assert missed["follow, exact"] < 0.5 * missed["follow"] and missed["keep, exact"] < 0.5 * missed["keep"]
+    assert missed["exact"] <= missed["default"] <= missed["as recorded"] and missed["exact"] < 0.1

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from engine import project
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.project import Contents, Edit, Marks, Media, Note, Pin, Project, Span
 from engine.take import SHAPES, Take
 
@@ -35,7 +35,7 @@ def an_edit(take: Take, seed: int) -> Edit:
     rng = np.random.default_rng(seed)
     start = int(rng.integers(0, len(take)))
     frames = int(rng.integers(0, len(take) - start + 1))
-    asked = np.where(rng.random((frames, len(CONTROLS))) < 0.5, np.nan, rng.random((frames, len(CONTROLS))))
+    asked = np.where(rng.random((frames, len(ALL_CONTROLS))) < 0.5, np.nan, rng.random((frames, len(ALL_CONTROLS))))
     inputs = {"radius_frames": seed, "exact": bool(seed % 2), "by_mm": np.float64(1 / 3), "curve": np.arange(3.0)}
     return Edit("drag", f"drag {seed} 'lips'", start, rng.random((frames, len(SHAPES))), asked, inputs)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engine import project
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.errors import EngineError, FormatError
 from engine.formats import livelink
 from engine.formats.livelink_origin import Origin
@@ -164,12 +164,12 @@ def test_a_take_whose_stored_text_is_no_row_is_written_all_the_same(recorded: by
 def test_a_small_file_cannot_fill_the_memory(whole: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("engine.project.blobs.ORDINARY_BYTES", 2**20)
     rows = zeros(40 * len(SHAPES) * 8)
-    asked = zeros(40 * len(CONTROLS) * 8)
+    asked = zeros(40 * len(ALL_CONTROLS) * 8)
     statements = (
         "DELETE FROM edits",
         "INSERT INTO edits WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n WHERE i < 5999) "
         f"SELECT i, 'a', 'b', '{{}}', 0, 40, x'{rows.hex()}', "
-        f"'{json.dumps([control.name for control in CONTROLS])}', x'{asked.hex()}', NULL FROM n",
+        f"'{json.dumps([control.name for control in ALL_CONTROLS])}', x'{asked.hex()}', NULL FROM n",
     )
     assert "more than it can hold" in damaged(whole, tmp_path / "a.retake", *statements)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from engine import project
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.project import Contents
 
 
@@ -15,7 +15,7 @@ def test_replaying_equals_putting_edits_in_one_after_another(contents: Contents)
     for position in range(len(contents.edits) + 1):
         state = project.replay(replace(contents, position=position))
         take = contents.original
-        asked = np.full((len(take), len(CONTROLS)), np.nan)
+        asked = np.full((len(take), len(ALL_CONTROLS)), np.nan)
         for index, edit in enumerate(contents.edits):
             np.testing.assert_array_equal(state.before[index][0], take.weights[edit.start : edit.stop])
             np.testing.assert_array_equal(state.before[index][1], asked[edit.start : edit.stop])

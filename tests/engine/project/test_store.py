@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from engine import project
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.errors import EngineError, FormatError
 from engine.formats import livelink
 from engine.performance import demo
@@ -98,7 +98,7 @@ def test_a_full_disk_is_a_sentence_and_the_next_step_brings_what_is_missing(cont
     opened._database.execute(f"PRAGMA max_page_count = {pages + 2}")
     take, frames = contents.original, len(contents.original)
     noise = np.random.default_rng(0).random((2, frames, len(SHAPES)))
-    more = [Edit("fill", "fill", 0, rows, np.full((frames, len(CONTROLS)), np.nan)) for rows in noise]
+    more = [Edit("fill", "fill", 0, rows, np.full((frames, len(ALL_CONTROLS)), np.nan)) for rows in noise]
     with pytest.raises(EngineError, match="no room left"):
         opened.put(Contents(take, (*contents.edits, more[0]), 5, MARKS))
     assert opened.contents is contents

@@ -1,0 +1,74 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.controls import ALL_CONTROLS
+from engine.extended import bundled_face
+from engine.regress.plausibility import Plausible
+from engine.regress.prior import bundled_prior
+from engine.take import SHAPES, Array
+
+COUNT = len(ALL_CONTROLS)
+REST = np.repeat(bundled_face().measure(np.zeros((1, len(SHAPES)))), 40, axis=0)
+PRIOR = bundled_prior()
+SPAN = PRIOR.high - PRIOR.low
+
+
+def granted(by: Array, *, own: Array = REST, takes: Array = REST, believability: float = 0.5) -> Array:
+    """Return what is granted of a change, (16,) and NaN where nothing is asked, over all frames."""
+    return Plausible(takes, PRIOR).granted(own + by, own, believability=believability, fps=30.0)
+
+
+def asking(column: int, by: float) -> Array:
+    wish = np.full(COUNT, np.nan)
+    wish[column] = by
+    return wish
+
+
+@settings(deadline=None, max_examples=40)
+@given(column=st.integers(0, COUNT - 1), share=st.floats(-3, 3), more=st.floats(1, 3))
+def test_more_is_never_less_and_twice_is_once(column: int, share: float, more: float) -> None:
+    less, further = (granted(asking(column, share * SPAN[column] * times))[:, column] for times in (1.0, more))
+    assert (np.sign(share) * (further - less) >= -1e-9).all()
+    own = REST.copy()
+    own[:, column] = less
+    again = Plausible(own, PRIOR).granted(REST + asking(column, share * SPAN[column]), own, believability=0.5, fps=30.0)
+    np.testing.assert_allclose(again[:, column], less, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("column", range(COUNT))
+def test_what_was_recorded_is_granted_and_little_beyond_it(column: int) -> None:
+    for end in (PRIOR.low, PRIOR.high):
+        wish = np.full(COUNT, np.nan)
+        wish[column] = end[column] - REST[0, column]
+        np.testing.assert_allclose(granted(wish)[:, column], end[column])
+        np.testing.assert_allclose(granted(3 * wish, believability=1.0)[:, column], end[column], atol=1e-6)
+        beyond = np.abs(granted(10 * wish)[:, column] - end[column])
+        assert (beyond <= 0.25 * SPAN[column] + 1e-9).all()
+        np.testing.assert_array_equal(granted(3 * wish, believability=0.0), REST + 3 * wish)
+
+
+def test_what_the_take_does_is_granted() -> None:
+    takes = REST.copy()
+    takes[5, 0] = PRIOR.high[0] + 2 * SPAN[0]
+    np.testing.assert_allclose(granted(asking(0, takes[5, 0] - REST[0, 0]), takes=takes)[:, 0], takes[5, 0])
+
+
+def test_curves_that_do_not_go_together_are_drawn_back_together() -> None:
+    apart = np.full(COUNT, np.nan)
+    apart[[0, 1, 4, 5, 6, 7]] = [40.0, 15.0, -12.0, 15.0, -10.0, -12.0]
+    drawn = granted(apart, believability=1.0)
+    shares = (drawn - REST)[20] / apart
+    assert np.nanmax(shares) < 0.9 and np.nanmin(shares) >= 0.0
+
+
+def test_a_spike_is_drawn_back_and_a_step_is_not() -> None:
+    spike, step = np.full((40, COUNT), np.nan), np.full((40, COUNT), np.nan)
+    spike[:, 6] = step[:, 6] = 0.0
+    spike[20, 6] = 6.0
+    step[10:30, 6] = 6.0
+    assert granted(spike)[20, 6] - REST[20, 6] < 4.0
+    assert granted(step)[20, 6] - REST[20, 6] == pytest.approx(6.0)
