@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.reading import AUTOMATIC, Fps, ReadSides, open_take, sides_of
-from app.printing import say
+from app.printing import remark, say
 from engine.take import timecode
 from engine.words import counted
 
@@ -75,7 +75,7 @@ def _lane(path: Path | None, offset_s: float) -> VisemeLane | None:
 
     if path is None:
         return None
-    cues = read_cues(path, lambda sentence: typer.echo(sentence, err=True))
+    cues = read_cues(path, remark)
     return shifted(attached(cues, path.name), offset_s) if cues else None
 
 

@@ -14,7 +14,7 @@ from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.character import Character
-    from engine.formats.characters.marker_places import MarkerTable
+    from engine.formats.characters.marker_table import MarkerTable
     from engine.spacetime.layout import Layout
     from engine.spacetime.source import Source
 
