@@ -114,7 +114,8 @@ def _usual_rate(steps: Array) -> float | None:
     typical = float(np.median(steps)) if len(steps) else 0.0
     if not 1e-4 < typical < 10:
         return None
-    rate = 1 / float(steps[np.abs(steps / typical - 1) < 0.5].mean())  # of plain steps: none is missing between them
+    plain = steps[np.abs(steps / typical - 1) < 0.5]  # none is missing between them
+    rate = 1 / (float(plain.mean()) if len(plain) else typical)
     nearest = min(STANDARD_FPS, key=lambda standard: abs(standard - rate))
     return nearest if abs(nearest / rate - 1) < SAME_RATE else round(rate, 6)
 

@@ -362,3 +362,14 @@ def test_whatever_stands_there_rows_keep_their_order(seed: int) -> None:
         assert 0 < clock.fps < 1001 and 0 <= clock.start_s <= 86_400, codes
         assert clock.rows[0] == 0 and (np.diff(clock.rows) >= 1).all() and len(clock.rows) == count
         assert len(timecodes_between(texts, clock.rows, [0, int(clock.rows[-1])], fps=clock.fps)) == 2
+
+
+@pytest.mark.parametrize(
+    ("gaps", "said"), [([150], "a gap of 150 s"), ([1], "a gap of 1.00 s"), ([2, 2], "2 gaps, 4.00 s in all")]
+)
+def test_gaps_are_said_with_their_length_in_plain_numbers(gaps: list[int], said: str) -> None:
+    times = np.arange(120) / 30
+    for place, gap_s in enumerate(gaps):
+        times[40 * (place + 1) :] += gap_s
+    notices = clock_of([f"{time:.4f}".encode() for time in times]).notices
+    assert any(said in notice for notice in notices), notices

@@ -69,6 +69,12 @@ def test_rounded_times_tell_the_rate(tmp_path: Path, fps: float) -> None:
     assert read(path).fps == pytest.approx(fps, rel=1e-8)
 
 
+def test_times_that_go_on_in_two_paces_tell_the_one_between(tmp_path: Path) -> None:
+    path = tmp_path / "m.csv"
+    path.write_text("time,a_x,a_y,a_z\n0,1,2,3\n0.1,1,2,3\n1.1,1,2,3\n")
+    assert read(path).fps == pytest.approx(1 / 0.55, abs=1e-6)
+
+
 def test_a_spreadsheet_s_quotes_and_decimal_commas_are_read(tmp_path: Path) -> None:
     path = tmp_path / "m.csv"
     path.write_text(table("{}_{}"))
