@@ -60,7 +60,9 @@ def project(
     goal = _Goal(measurer.gauges(columns, shapes), columns, asked, hold)
     damping = np.full(len(weights), STEPS.first)
     active = np.flatnonzero(hold.any(axis=1))
-    low, high = (bound(weights[np.ix_(active, shapes)], limit) for bound, limit in ((np.minimum, 0.0), (np.maximum, 1.0)))
+    low, high = (
+        bound(weights[np.ix_(active, shapes)], limit) for bound, limit in ((np.minimum, 0.0), (np.maximum, 1.0))
+    )
     vectors, miss = goal.missing(current[active], active)
     for _ in range(STEPS.rounds):
         far = np.abs(miss).max(axis=1, initial=0.0) > STEPS.met_mm
@@ -142,7 +144,7 @@ def _step(slope: Array, miss: Array, damping: Array, *, covariance: Array, at: t
 
 
 def _damped(slope: Array, miss: Array, covariance: Array, damping: Array) -> Array:
-    frames, values, shapes = slope.shape
+    _, values, shapes = slope.shape
     spread = (slope.reshape(-1, shapes) @ covariance).reshape(slope.shape)  # (frames, values, shapes)
     if values == 1:
         gram = (spread[:, 0] * slope[:, 0]).sum(axis=1) + damping
