@@ -144,7 +144,7 @@ def _step(slope: Array, miss: Array, damping: Array, *, covariance: Array, at: t
 
 
 def _damped(slope: Array, miss: Array, covariance: Array, damping: Array) -> Array:
-    frames, values, shapes = slope.shape
+    _, values, shapes = slope.shape
     spread = (slope.reshape(-1, shapes) @ covariance).reshape(slope.shape)  # (frames, values, shapes)
     if values == 1:
         gram = (spread[:, 0] * slope[:, 0]).sum(axis=1) + damping
