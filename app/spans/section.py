@@ -150,8 +150,8 @@ class SpansSection(Section):
             return
         for other in marks.spans:  # one that was lost may lie within: it is often filled with some frames around it
             if other.kind != "lost" and other.start < selection[1] and selection[0] < other.stop:
-                where = f"{other.start}:{other.stop}"
-                self.refused.emit(f"A span at {where} is marked already.", "Unmark it, or mark frames beside it.")
+                where = f"Frames {other.start} to {other.stop - 1}"
+                self.refused.emit(f"{where} are marked already.", "Unmark them, or mark frames beside them.")
                 return
         spans = sorted((*marks.spans, Span(*selection)), key=lambda span: span.start)
         self.session.undo.push(MarkCommand(self.session, replace(marks, spans=tuple(spans)), "mark a span"))

@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
     QSplitter,
     QWidget,
 )
+from shiboken6 import isValid
 
 from app.actions.table import ACTIONS
 from app.curves.tools import TOOLS
@@ -170,7 +171,7 @@ class Walk:
         widget, at = self._somewhere()
         if self._pressed is not None:
             held, button = self._pressed
-            if not held.isVisible():
+            if not isValid(held) or not held.isVisible():  # a list that is renewed deletes what is in it
                 return self._release()
             at = QPoint(self.rng.randrange(-30, held.width() + 30), self.rng.randrange(-30, held.height() + 30))
             _drag_to(held, at, button, self.rng.choice(MODIFIERS))
@@ -182,6 +183,8 @@ class Walk:
         if self._pressed is None:
             return self._click()
         (widget, button), self._pressed = self._pressed, None
+        if not isValid(widget):
+            return "let go of a widget that is gone"
         at = QPoint(self.rng.randrange(max(1, widget.width())), self.rng.randrange(max(1, widget.height())))
         tool, inference, session = self.window.curves.tool, self.window.inference, self.window.session
         drawn = tool.busy and button == Qt.MouseButton.LeftButton and inference.busy
