@@ -10,16 +10,16 @@ from engine.take import timecode
 from engine.words import NAME_LENGTH, counted, plain
 
 
-def export_report(session: Session, path: Path) -> tuple[str, str]:
-    """Return what was written to a file, and what of the session is not in it: all that is no curve."""
+def export_report(session: Session, path: Path, *, saved: bool) -> tuple[str, str]:
+    """Return what was written to a file, and what of the session is lost with it: all that is no curve, unless a project has it."""
     take = session.take
     name = plain(path.name, longest=NAME_LENGTH)
     length = timecode(take.duration_s, take.fps)
     wrote = f"Wrote {name}: {counted(len(take), 'frame')} at {take.fps:g} fps, {length}."
     missing = _beside_the_curves(session)
-    if not missing:
+    if saved or not missing:
         return wrote, ""
-    return wrote, f"A take's file cannot hold {_listed(missing)}: save the project to keep them."
+    return wrote, f"A take's file cannot hold {_listed(missing)}. Save the project to keep all of it."
 
 
 def _beside_the_curves(session: Session) -> list[str]:

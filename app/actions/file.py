@@ -204,7 +204,8 @@ class FileActions(QObject):
             self.told.emit(error.sentence, error.advice)
             return False
         self._settings.remember(path)
-        self.wrote.emit(*export_report(self._session, path))
+        saved = self._keeper.path is not None and not self._session.edited
+        self.wrote.emit(*export_report(self._session, path, saved=saved))
         return True
 
     def open_recording(self, take: Take) -> None:

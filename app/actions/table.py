@@ -189,10 +189,10 @@ CONTEXT: dict[str, tuple[str, ...]] = {
         *("pin_tool", "note", "", "play"),
     ),
     "curve": (
-        *("close_here", "copy", "paste", "smooth", "", "hit_exactly", "rest_follows", "again", ""),
+        *("close_here", "copy", "paste", "smooth", "", "hit_exactly", "go_there", "again", ""),
         *("set_in", "set_out", "clear_selection", "", "fill", "note", "", "expand_lane", "frame_all"),
     ),
-    "lane": ("expand_lane", "close_here", "", "hit_exactly", "rest_follows", "", "previous_lane", "next_lane"),
+    "lane": ("expand_lane", "close_here", "", "hit_exactly", "go_there", "", "previous_lane", "next_lane"),
     "span": ("fill", "smooth", "unmark_span", "", "copy", "clear_selection", "", "note", "loop"),
     "flag": ("previous_span", "next_span", "", "note", "pin_tool", "smooth", "mark_tool"),
     "note": ("edit_note", "delete_note", "", "note"),

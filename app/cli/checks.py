@@ -63,7 +63,8 @@ def require_writable(path: Path, endings: tuple[str, ...]) -> None:
     if endings == TAKE:
         format_of(path)
     elif endings != ANY and path.suffix.lower() not in endings:
-        raise EditError(f"{path.name} has not an ending that can be written.", f"Use one of: {', '.join(endings)}.")
+        known = ", ".join(endings)
+        raise EditError(f"{path.name} is not a kind of file that can be written here.", f"Use one of: {known}.")
     if path.is_dir():
         raise EngineError(f"{path.name} is a folder.", "Name a file in it.")
     if not path.parent.is_dir():

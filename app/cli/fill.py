@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
-from app.printing import say
+from app.printing import remark, say
 from engine.errors import EditError, FormatError
 from engine.formats import format_of, read_take
 from engine.formats.textfile import read_text
@@ -74,7 +74,7 @@ def fill(
         pins=merged_pins([_pin(text) for text in pin or []]),
         guide=read_take(guide) if guide else None,
         guide_offset=guide_offset,
-        visemes=begun_at(read_cues(visemes, warn), visemes_offset) if visemes else (),
+        visemes=begun_at(read_cues(visemes, remark), visemes_offset) if visemes else (),
         controls=_controls(control or [], spans),
         style=cast(Style, style),  # checked with the rest
         lost=lost,
@@ -84,11 +84,6 @@ def fill(
         path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
         save_take(one, path, write_sides)
         say(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
-
-
-def warn(sentence: str) -> None:
-    """Say what the user should hear beside the result."""
-    typer.echo(sentence, err=True)
 
 
 def _said(spans: list[tuple[int, int]]) -> str:

@@ -27,9 +27,9 @@ def pulled(
     """Return rows of a curve, (n,) from frame `start`, pulled at `centre` within a floor and a ceiling.
 
     With d how far the centre goes and h its height over the floor, a frame of height h' goes down by
-    f min(d h' / h, d, h'), f its falloff: what is higher goes down as far, what is lower in proportion. So the whole
-    nears the floor together: were all to go down as far and be cut there, a peak would be left standing on it as a
-    needle. Going up is the same towards a ceiling.
+    min(f d, h' d / h), f its falloff: nowhere by a greater share of its height than the centre. So the whole nears the
+    floor together: were all to go down as far and be cut there, a peak would be left standing on it as a needle. Where
+    that is no bound, what a pull did is undone by the pull back. Going up is the same towards a ceiling.
     """
     frames = np.arange(start, start + len(curve), dtype=np.float64)
     by, follows = strength * by, falloff(frames, centre, radius_frames)
@@ -38,7 +38,7 @@ def pulled(
     if not np.isfinite(at_centre):
         return np.asarray(curve + by * follows)
     share = min(1.0, abs(by) / at_centre) if at_centre > 0 else 1.0
-    return np.asarray(curve + np.sign(by) * follows * np.minimum(share * room, abs(by)))
+    return np.asarray(curve + np.sign(by) * np.minimum(abs(by) * follows, share * room))
 
 
 def reach(centre: int, radius_frames: float, frames: int) -> tuple[int, int]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from app.retarget.carry import Target, with_markers
 from engine.errors import EditError
 from engine.formats import markers
-from engine.formats.characters.marker_places import MarkerMatch, MarkerTable, match_markers
+from engine.formats.characters.marker_table import MarkerMatch, MarkerTable
 from engine.words import counted
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def captured(path: Path, neutral_frame: int, target: Target) -> Capture:
 
     Markers that lie on no face are kept: a person places them.
     """
+    from engine.formats.characters.marker_places import match_markers
     from engine.spacetime.source import from_markers
 
     read, doubt = markers.read(path), None

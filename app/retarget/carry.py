@@ -12,14 +12,14 @@ import numpy as np
 
 from engine.character import Character, bundled, without_lacking
 from engine.errors import EditError
-from engine.formats.characters.assemble import Import
-from engine.formats.characters.marker_places import MarkerTable, places_on
+from engine.formats.characters.marker_table import MarkerTable
 from engine.formats.characters.reading import Reading
 from engine.spacetime.layout import Layout, named, standard
 from engine.spacetime.matching import Matching
 from engine.take import SHAPE_INDEX, Array, Take
 
 if TYPE_CHECKING:
+    from engine.formats.characters.assemble import Import
     from engine.spacetime.source import Source
 
 Pose = Mapping[str, float]
@@ -212,6 +212,8 @@ def opened(path: Path | None, reading: Reading | None = None) -> Target:
 
 def with_markers(target: Target, capture: Source, table: MarkerTable) -> Target:
     """Return the target with a capture's markers placed on it: those by hand stay, the others go where they were taken for."""
+    from engine.formats.characters.marker_places import places_on
+
     made = replace(target, markers=table)
     if target.head is None or not table.landmarks:
         return made

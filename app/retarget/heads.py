@@ -91,7 +91,9 @@ class HeadSection(Section):
                     box.addItem(value)
                 box.setCurrentText(value or FOUND)
         if refused is not None:
-            self._facts.setText(f"{refused[0].name} could not be used as it was read: say its unit and axes.")
+            self._facts.setText(
+                f"{refused[0].name} could not be used. If its unit or its axes were misread, choose them here."
+            )
             self.table.hide()
             self.all_shapes.hide()
             return

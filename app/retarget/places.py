@@ -12,7 +12,7 @@ from app.retarget.retargeting import Retargeting
 from app.session import Session
 from app.widgets.section import Section, quiet
 from app.widgets.text import tip
-from engine.formats.characters.marker_places import MarkerMatch
+from engine.formats.characters.marker_table import MarkerMatch
 from engine.spacetime.layout import MARKERS
 from engine.words import NAME_LENGTH, plain
 

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QMoveEvent, QShowEvent
 from PySide6.QtWidgets import (
     QApplication,
     QFrame,
@@ -80,6 +80,8 @@ class MainWindow(QMainWindow):
     settings : what is remembered
     unsaved : the folder for unsaved work; the user's own without one
     """
+
+    _framed = False  # whether room was made for the desktop's frame
 
     def __init__(
         self,
@@ -299,7 +301,14 @@ class MainWindow(QMainWindow):
         """Load the networks once the window can be seen."""
         super().showEvent(event)
         QTimer.singleShot(0, self.inference.warm_up)
-        QTimer.singleShot(0, partial(stay_on_screen, self))  # the desktop has drawn its frame by then
+        QTimer.singleShot(0, partial(stay_on_screen, self))
+
+    def moveEvent(self, event: QMoveEvent) -> None:
+        """Make room for the frame, which a desktop may draw long after the window is seen, once; later moves are the user's."""
+        super().moveEvent(event)
+        if not self._framed and self.isVisible() and self.frameGeometry() != self.geometry():
+            self._framed = True
+            QTimer.singleShot(0, partial(stay_on_screen, self))
 
     # --- opening and closing
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from engine.errors import EditError
 from engine.live.packet import MAX_FPS, ROTATION_COUNT
-from engine.live.stream import Arrival
 from engine.take import SHAPES, Array, Take
+
+if TYPE_CHECKING:  # the stream brings torch, and what is read back from a recording needs none
+    from engine.live.stream import Arrival
 
 MAX_FRAMES = 1_000_000  # over four and a half hours at 60 fps; a sender gone mad must not fill memory
 # A sender whose clock leaps between packets declares frames by the million: 20,000 are five minutes at 60 fps.

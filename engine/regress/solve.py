@@ -218,8 +218,8 @@ class Solver:
         # What is held in part is brought by that part from where it would go by itself; from the same face as what is held
         # fully, so that one turns into the other. Where nothing is held fully, that face is the one there is.
         partly = (hold > 0) & ~whole
-        first = np.asarray(whole.any(axis=1))[:, None]
-        for now in (np.where(first, whole, partly), (hold > 0) & (first & np.asarray(partly.any(axis=1))[:, None])):
+        first = np.asarray(whole.any(axis=1, keepdims=True))
+        for now in (np.where(first, whole, partly), (hold > 0) & (first & partly.any(axis=1, keepdims=True))):
             rows = np.flatnonzero(now.any(axis=1))
             if len(rows):
                 at = landed[rows]

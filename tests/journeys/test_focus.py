@@ -6,7 +6,7 @@ import itertools
 
 from PySide6.QtCore import QEvent, QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QApplication, QCheckBox, QPushButton, QSlider, QWidget
+from PySide6.QtWidgets import QAbstractButton, QApplication, QPushButton, QSlider, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.curves.tools import TOOLS
@@ -34,7 +34,7 @@ def test_a_click_on_ruler_face_or_lanes_takes_the_keys_from_a_note(window: MainW
         target = widget.viewport() if widget is window.curves else widget
         QTest.mouseClick(target, LEFT, PLAIN, QPoint(target.width() // 2, 10))
         assert widget.hasFocus()
-        QTest.keyClick(QApplication.focusWidget(), Key.Key_K)
+        QTest.keyClick(QApplication.focusWidget(), Key.Key_P)
         assert window.session.tool == "pin" and window.notes.entry.text() == ""
 
 
@@ -145,7 +145,7 @@ def test_whatever_has_the_keys_shows_it(window: MainWindow) -> None:
 
 def test_what_tab_reached_is_used_by_the_keys(window: MainWindow) -> None:
     frame = window.session.playhead
-    box = next(each for each in reached(window) if isinstance(each, QCheckBox))
+    box = next(each for each in reached(window) if isinstance(each, QAbstractButton) and each.isCheckable())
     box.setFocus(Qt.FocusReason.TabFocusReason)
     before = box.isChecked()
     QTest.keyClick(box, Key.Key_Space)

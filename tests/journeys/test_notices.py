@@ -71,8 +71,14 @@ def test_an_export_says_what_it_wrote_and_what_is_not_in_it(
     assert window.files.export() and len(read_take(path)) == 322
     told = window.notices.text.text()
     assert told.endswith(
-        "A take's file cannot hold 1 note, 1 marked span or 1 step to undo: save the project to keep them."
+        "A take's file cannot hold 1 note, 1 marked span or 1 step to undo. Save the project to keep all of it."
     )
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(tmp_path / "kept.retake"), ""))
+    assert window.files.save()
+    qtbot.waitUntil(lambda: not window.session.edited)
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(path), ""))
+    assert window.files.export()
+    assert window.notices.text.text() == "Wrote out.csv: 322 frames at 30 fps, 00:00:10:22."
 
 
 def test_sound_that_goes_on_after_the_take_is_said(qtbot: QtBot, window: MainWindow) -> None:

@@ -36,6 +36,21 @@ def test_the_window_is_no_larger_than_its_screen(window: MainWindow) -> None:
     assert window.width() <= max(available.width(), least.width())
 
 
+def test_a_frame_that_the_desktop_draws_late_hangs_over_no_edge(
+    qtbot: QtBot, window: MainWindow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    available = window.screen().availableGeometry()
+    window.move(available.topLeft())
+    QApplication.processEvents()
+    window._framed = False
+    monkeypatch.setattr(window, "frameGeometry", lambda: window.geometry().adjusted(-1, -31, 1, 1))
+    window.move(available.topLeft() + QPoint(1, 1))
+    qtbot.waitUntil(lambda: window.frameGeometry().top() >= available.top())
+    window.move(available.topLeft())  # the user's own move is left alone
+    QApplication.processEvents()
+    assert window.pos() == available.topLeft()
+
+
 def test_what_is_pressed_first_is_seen_with_every_tool(qtbot: QtBot, window: MainWindow) -> None:
     window.resize(SMALL)
     window.session.select((window.session.marks.spans[0].start, window.session.marks.spans[0].stop))

@@ -8,7 +8,6 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from engine.manifold.drive import parts_of
 from engine.take import Array
 
 FEWEST, MOST_TRIED = 20, 40  # vertices of a ball, parts that are looked at
@@ -42,6 +41,8 @@ def _could_be_eyes(one: Ball, other: Ball) -> bool:
 
 def _compact(vertices: Array, triangles: npt.NDArray[np.int32]) -> list[npt.NDArray[np.int64]]:
     """Return the rows of those parts, largest first, whose box is about a cube."""
+    from engine.manifold.drive import parts_of  # it brings scipy, which nothing that only names a head needs
+
     parts = parts_of(triangles, len(vertices))
     order = np.argsort(parts, kind="stable")
     starts = np.flatnonzero(np.diff(parts[order], prepend=-1))

@@ -21,13 +21,11 @@ NEUTRAL_WORDS = ("neutral", "basis", "base", "rest")
 
 
 def read(folder: Path) -> RawCharacter:
-    """Read every OBJ file of a folder as one character; raises `FormatError` that names the file at fault."""
-    try:
-        paths = sorted(path for path in folder.iterdir() if path.suffix.lower() == ".obj" and path.is_file())
-    except OSError as error:
-        raise unread(folder, error) from error
-    if not paths:
-        raise FormatError(f"{folder.name} holds no OBJ file.", "Choose the folder with one OBJ file for each shape.")
+    """Read every OBJ file of a folder as one character; raises `FormatError` that names the file at fault.
+
+    Where the folder holds none but one folder in it does, as in ICT-FaceKit's download, that folder is read.
+    """
+    folder, paths = _with_obj(folder)
     if len(paths) > MAX_SHAPES:
         raise FormatError(f"{folder.name} holds {len(paths)} OBJ files; a character has at most {MAX_SHAPES}.")
     neutral_path = _neutral(paths, folder)
@@ -42,6 +40,26 @@ def read(folder: Path) -> RawCharacter:
                 raise FormatError(f"{path.name} has {count}, {neutral_path.name} has {len(vertices)}.")
             shapes[path.stem] = (posed - vertices).astype(np.float32)
     return check(RawCharacter(folder.name, vertices, faces, shapes))
+
+
+def _with_obj(folder: Path) -> tuple[Path, list[Path]]:
+    """Return a folder, or the only one right in it, that holds OBJ files, and these in order."""
+    try:
+        found = _obj_of(folder)
+        if found:
+            return folder, found
+        inner = [(each, found) for each in folder.iterdir() if each.is_dir() and (found := _obj_of(each))]
+    except OSError as error:
+        raise unread(folder, error) from error
+    if len(inner) == 1:
+        return inner[0]
+    where = f", but {counted(len(inner), 'folder')} in it do" if inner else ""
+    advice = "Choose the folder with one OBJ file for each shape."
+    raise FormatError(f"{folder.name} holds no OBJ file{where}.", advice)
+
+
+def _obj_of(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.iterdir() if path.suffix.lower() == ".obj" and path.is_file())
 
 
 def read_mesh(path: Path) -> RawCharacter:

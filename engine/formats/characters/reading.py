@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from engine.errors import EditError
 from engine.formats.characters import read
-from engine.formats.characters.assemble import Import, assemble
 from engine.formats.characters.frame import UNITS_MM, UPS, Frame, detect
 from engine.formats.characters.names import corrected, match_names
 from engine.formats.characters.raw import RawCharacter
+
+if TYPE_CHECKING:
+    from engine.formats.characters.assemble import Import
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,8 @@ def import_head(path: Path, reading: Reading = Reading(), landmarks: Mapping[str
 
 def assembled(raw: RawCharacter, reading: Reading, landmarks: Mapping[str, int] | None = None) -> Import:
     """Make a character of a file's mesh as corrected; raises `EngineError`, for a unit or an axis that there is not too."""
+    from engine.formats.characters.assemble import assemble
+
     for value, known, what in ((reading.unit, tuple(UNITS_MM), "unit"), (reading.up, UPS, "upward axis")):
         if value and value not in known:
             raise EditError(f"There is no {what} called {value[:20]!r}.", f"Use one of: {', '.join(known)}.")

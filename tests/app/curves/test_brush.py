@@ -105,3 +105,14 @@ def test_a_stretch_that_is_made_longer_or_shorter_stays_within_what_was_there(
     assert first == start and start + len(rows) <= len(curve)
     assert rows.min() >= curve.min() - 1e-9 and rows.max() <= curve.max() + 1e-9
     np.testing.assert_allclose(rows[0], curve[start])
+
+
+@given(st.floats(0, 5), st.floats(0, 40), RADII, st.sampled_from([(), (50.0,)]))
+def test_what_is_pulled_up_and_back_is_as_it_was(
+    rest: float, by: float, radius: float, ceiling: tuple[float, ...]
+) -> None:
+    limits = {"ceiling": ceiling[0]} if ceiling else {}
+    curve = np.full(81, rest)
+    up = bent(curve, 40, by=by, radius=radius, **limits)
+    back = bent(up, 40, by=-by, radius=radius, **limits)
+    np.testing.assert_allclose(back, curve, atol=1e-9)

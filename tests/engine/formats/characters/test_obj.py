@@ -29,6 +29,17 @@ def test_the_one_file_that_is_no_shape_is_the_neutral_one(tmp_path: Path) -> Non
     assert list(read(folder(tmp_path, anna=QUAD, mouthPucker=QUAD)).shapes) == ["mouthPucker"]
 
 
+def test_the_one_folder_within_that_holds_the_files_is_found(tmp_path: Path) -> None:
+    (tmp_path / "pictures").mkdir()
+    (tmp_path / "LICENSE").write_text("")
+    (tmp_path / "FaceXModel").mkdir()
+    folder(tmp_path / "FaceXModel", neutral=QUAD, mouthPucker=QUAD)
+    assert list(read(tmp_path).shapes) == ["mouthPucker"]
+    folder(tmp_path / "pictures", neutral=QUAD)
+    with pytest.raises(FormatError, match="holds no OBJ file, but 2 folders in it do"):
+        read(tmp_path)
+
+
 @pytest.mark.parametrize(
     ("files", "says"),
     [
