@@ -62,14 +62,12 @@ def pieces_to_measure(data: Path | None) -> list[Piece]:
 def methods(report: Report) -> dict[str, Method]:
     """Return every method by row name; those that need the recorded takes only where these are.
 
-    `editor` is what a drag makes of the take, at the default believability. `full` is the networks alone, and knows the
-    take that is edited: what its controls do there is not held to be too much. Without that knowledge, from curves alone,
-    it is `full_of_curves`; the rows of others are of curves alone.
+    `full` is the networks alone, and knows the take that is edited: what its controls do there is not held to be too much.
+    Without that knowledge, from curves alone, it is `full_of_curves`; the rows of others are of curves alone.
     """
     ours = infer.bundled()
     found: dict[str, Method] = {
         "regressor": lambda controls, _: ours.infer(controls, full=False),
-        "editor": editor,
         "full": full(ours),
         "full_of_curves": lambda controls, take: ours.infer(controls, kept=take.kept),
         "full_without_contacts": lambda controls, take: ours.infer(controls, original=take.controls, land=False),
