@@ -44,7 +44,6 @@ def test_what_is_said_follows_the_playhead(qtbot: QtBot, window: MainWindow) -> 
     close(qtbot, window, EYE, 100)
     session = window.session
     session.move_playhead(102)
-    asked = session.asked[102, EYE]
     assert window.facts.told.text() == f"{CONTROLS[EYE].title} {session.controls[102, EYE]:.1f} mm, as asked"
     session.move_playhead(250)
     assert f"{session.controls[100, EYE]:.1f} mm, as asked (frame 100)" in window.facts.told.text()
