@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,7 +17,7 @@ from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.formats.reading import Reading
-    from engine.quality import Seen
+    from engine.quality import Seen, Sound
     from engine.speech.lane import VisemeLane
     from engine.take import Take
 
@@ -33,17 +34,21 @@ def flags(
         Path | None, typer.Option(help="What is said when, so that lips which should meet are looked for.")
     ] = None,
     visemes_offset: Annotated[float, typer.Option(help="Second of the take at which that file begins.")] = 0.0,
+    audio: Annotated[
+        Path | None, typer.Option(help="The take's sound, so that lips out of step with it are looked for.")
+    ] = None,
+    audio_offset: Annotated[float, typer.Option(help="Second of the take at which the sound begins.")] = 0.0,
     fps: Fps = None,
     sides: ReadSides = AUTOMATIC,
 ) -> None:
-    """List frames to look at: spikes, frozen and lost ones, impossible faces, lips that stay open, what was not reached."""
+    """List frames to look at: what the tracker spoilt, faces that no face makes, edits that show, lips off the sound."""
     from engine.formats.atomic import write_bytes
     from engine.formats.reading import Reading
     from engine.quality import flags_of
 
     reading = Reading(fps, sides_of(sides))
     seen = _seen(take, reading, open_take(original, fps, sides) if original else None, _lane(visemes, visemes_offset))
-    found = flags_of(seen)
+    found = flags_of(replace(seen, sound=_sound(audio, seen.fps, audio_offset)))
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(COLUMNS)
@@ -55,6 +60,13 @@ def flags(
     else:
         write_bytes(out, [text.getvalue().encode()])
         say(f"{counted(len(found), 'flag')}; wrote {out}")
+
+
+def _sound(path: Path | None, fps: float, offset_s: float) -> Sound | None:
+    from engine.formats.audio import read
+    from engine.quality import sound_of
+
+    return sound_of(read(path), fps=fps, offset_s=offset_s) if path is not None else None
 
 
 def _lane(path: Path | None, offset_s: float) -> VisemeLane | None:

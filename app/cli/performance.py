@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from app.cli.reading import open_take
 from engine.errors import EditError
 from engine.formats.content import require_file, unread
+from engine.formats.livelink_plain import HEADER_BYTES, form_of
 from engine.words import counted
 
 if TYPE_CHECKING:
@@ -100,7 +101,7 @@ def is_take(path: Path) -> bool:
     require_file(path)
     try:
         with path.open("rb") as file:
-            return file.read(16).removeprefix(b"\xef\xbb\xbf").lower().startswith(b"timecode")
+            return form_of(file.read(HEADER_BYTES)) is not None
     except OSError as error:
         raise unread(path, error) from error
 

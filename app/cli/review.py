@@ -67,6 +67,7 @@ def check(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     fail_on: Annotated[str, typer.Option(help=f"Flags that must not be there: {', '.join(KINDS)}.")] = ",".join(KINDS),
     least: Annotated[float, typer.Option(help="Only flags of at least this weight, 0..1.", min=0, max=1)] = 0.0,
+    sound: Annotated[bool, typer.Option("--sound/--no-sound", help="Look at the sound beside a take too.")] = True,
     fps: Fps = None,
     sides: ReadSides = AUTOMATIC,
 ) -> None:
@@ -82,7 +83,8 @@ def check(
     rows, unread = [], 0
     for path in takes:
         try:
-            flags = [flag for flag in pairs.flags(path, reading) if flag.kind in kinds and flag.weight >= least]
+            found = pairs.flags(path, reading, sound=sound)
+            flags = [flag for flag in found if flag.kind in kinds and flag.weight >= least]
             rows.append({"take": str(path), "ok": not flags, "flags": [asdict(flag) for flag in flags]})
         except EngineError as error:
             unread += 1

@@ -8,7 +8,8 @@ from PySide6.QtCore import QObject
 
 from app.background import LatestWins
 from app.session.session import Change, Session
-from engine.quality import Flag, flags_after, flags_of, seen_of
+from engine.formats.audio import Audio
+from engine.quality import Flag, flags_after, flags_of, seen_of, sound_of
 from engine.speech.lane import VisemeLane
 from engine.take import Array, Take
 
@@ -26,6 +27,8 @@ class _Look:
     original_controls: Array
     asked: Array
     visemes: VisemeLane | None
+    audio: Audio | None
+    audio_offset_s: float
     known: tuple[Flag, ...] | None
     touched: Frames
 
@@ -65,7 +68,7 @@ class Flagging(QObject):
             self._submit((0, len(self._session.take)))
         elif change & Change.CURVES:
             self._submit(self._session.touched)
-        elif change & Change.VISEMES:
+        elif change & (Change.VISEMES | Change.MEDIA):  # what they tell is looked for in the whole take
             self._submit((0, 0))
 
     def _submit(self, touched: Frames) -> None:
@@ -82,6 +85,8 @@ class Flagging(QObject):
                 session.original_controls,
                 session.asked,
                 session.visemes,
+                session.audio,
+                session.offset_s("audio"),
                 self._known,
                 everywhere,
             )
@@ -97,5 +102,7 @@ class Flagging(QObject):
 
 def _look(look: _Look) -> tuple[Flag, ...]:
     controls = look.controls, look.original_controls
-    seen = seen_of(look.take, look.original, look.asked, look.visemes, controls=controls)
+    audio, fps = look.audio, look.take.fps
+    sound = sound_of(audio, fps=fps, offset_s=look.audio_offset_s) if audio is not None else None
+    seen = seen_of(look.take, look.original, look.asked, look.visemes, controls=controls, sound=sound)
     return flags_of(seen) if look.known is None else flags_after(look.known, seen, look.touched)

@@ -13,13 +13,14 @@ import numpy as np
 
 from engine.controls import CONTROL_INDEX, bundled_measurer
 from engine.corpus import Piece, data_folder, load_takes, pieces_of, split
+from engine.editing import Dragger
 from engine.errors import EngineError
 from engine.evaluate import metrics
 from engine.evaluate.baselines import NAMES
 from engine.evaluate.baselines.nearest import Nearest
 from engine.regress import infer
 from engine.regress.areas import AREAS
-from engine.take import Array
+from engine.take import MODEL_FPS, Array, Take
 
 MOUTH_MM = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0)
 EYES_MM = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0)
@@ -38,10 +39,14 @@ class Known:
     ----------
     kept : (frames, 52) weights of the shapes that no method makes, the others zero
     controls : (frames, 8) mm, as recorded, whatever is asked instead
+    weights : (frames, 52) as recorded, for a method that edits them
+    whole_face : whether they animate more than the mouth
     """
 
     kept: Array
     controls: Array
+    weights: Array
+    whole_face: bool
 
 
 Method = Callable[[Array, Known], Array]  # asked controls, (frames, 8) in mm, to weights, (frames, 52)
@@ -57,12 +62,14 @@ def pieces_to_measure(data: Path | None) -> list[Piece]:
 def methods(report: Report) -> dict[str, Method]:
     """Return every method by row name; those that need the recorded takes only where these are.
 
-    `full` knows the take that is edited, as in the editor: what its controls do there is not held to be too much. Without
-    that knowledge, from curves alone, it is `full_of_curves`; the rows of others are of curves alone.
+    `editor` is what a drag makes of the take, at the default believability. `full` is the networks alone, and knows the
+    take that is edited: what its controls do there is not held to be too much. Without that knowledge, from curves alone,
+    it is `full_of_curves`; the rows of others are of curves alone.
     """
     ours = infer.bundled()
     found: dict[str, Method] = {
         "regressor": lambda controls, _: ours.infer(controls, full=False),
+        "editor": editor,
         "full": full(ours),
         "full_of_curves": lambda controls, take: ours.infer(controls, kept=take.kept),
         "full_without_contacts": lambda controls, take: ours.infer(controls, original=take.controls, land=False),
@@ -77,8 +84,16 @@ def methods(report: Report) -> dict[str, Method]:
 
 
 def full(ours: infer.Regressor) -> Method:
-    """Return the full system as the editor uses it."""
+    """Return the full system of networks, which knows the take."""
     return lambda controls, take: ours.infer(controls, kept=take.kept, original=take.controls)
+
+
+def editor(controls: Array, take: Known) -> Array:
+    """Return what the editor makes of a take when these controls are asked of it at its default believability."""
+    asked = np.array(controls)
+    if not take.whole_face:
+        asked[:, LIDS] = np.nan
+    return Dragger(Take(weights=take.weights, fps=MODEL_FPS)).drag(0, asked).weights
 
 
 def of_controls(infer: Callable[[Array], Array]) -> Method:
@@ -91,7 +106,7 @@ def known_of(piece: Piece) -> Known:
     kept = np.array(piece.weights)
     for area in AREAS:
         kept[:, area.shape_columns] = 0.0
-    return Known(kept, bundled_measurer().measure(piece.weights))
+    return Known(kept, bundled_measurer().measure(piece.weights), piece.weights, piece.whole_face)
 
 
 def played(method: Method, piece: Piece) -> Array:

@@ -11,13 +11,14 @@ import numpy as np
 from engine.errors import EditError
 from engine.formats.budget import BUDGET
 from engine.take import Array
-from engine.words import counted
+from engine.words import counted, plural
 
 CAPTURE_BUDGET = replace(BUDGET, values=40_000_000)  # 41 markers at 60 frames per second for an hour and a half
 
 FARTHEST_MM = 1e8
 SLOWEST_FPS, FASTEST_FPS = 0.01, 10_000.0
-TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+TO_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
+_SPELT = {"milli": "mm", "centi": "cm", "met": "m", "inch": "in"}  # how the long name of a unit begins
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +58,14 @@ class Markers:
         return len(self.positions)
 
 
+def unit_named(text: str) -> str | None:
+    """Return the unit, a key of `TO_MM`, that a file names, short or in full; None for another."""
+    name = text.strip().lower()
+    if name in TO_MM:
+        return name
+    return next((unit for start, unit in _SPELT.items() if name.startswith(start)), None)
+
+
 def each_once(names: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return names with a number behind those that were there before, and a sentence where there were any.
 
@@ -75,8 +84,9 @@ def each_once(names: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
             name = f"{name} {number}"
         seen.add(name)
         found.append(name)
+    count, named = len(doubled), plural(len(doubled), "has", "have")
     said = (
-        f"{counted(len(doubled), 'marker')} with a name that another has too, such as {doubled[0][:40]}: numbered."
+        f"{counted(count, 'marker')} {named} a name that another has too, and got a number: {doubled[0][:40]}."
         if doubled
         else ""
     )
@@ -88,4 +98,4 @@ def unit_by_size(positions: Array) -> tuple[str, str]:
     low, high = np.nanmin(positions, axis=1), np.nanmax(positions, axis=1)
     extent = float(np.nanmedian((high - low).max(axis=1)))
     unit = "m" if extent < 1.5 else "cm" if extent < 45 else "mm"
-    return unit, f"Positions were taken as {unit}: the markers span {extent:.3g} of them."
+    return unit, f"Positions are taken as {unit}: the markers span {extent:.3g} {unit}."

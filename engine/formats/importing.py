@@ -39,10 +39,8 @@ class Imported:
         if judged.agreement is None:
             return judged.confidence
         if judged.recorded == swapped:
-            return f"by the motion, {judged.confidence}, r = {judged.agreement:+.2f}"
-        return (
-            f"as asked; the motion says {in_words(judged.recorded)}, {judged.confidence}, r = {judged.agreement:+.2f}"
-        )
+            return f"by the motion, {judged.confidence}"
+        return f"as asked; the motion says {in_words(judged.recorded)}, {judged.confidence}"
 
 
 def in_words(swapped: bool) -> str:

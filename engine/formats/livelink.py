@@ -13,6 +13,7 @@ from engine.formats.content import content_of
 from engine.formats.livelink_clock import Clock, clock_of
 from engine.formats.livelink_header import DEFAULT_HEADER, EXPECTED, ROTATIONS, Columns, columns_of
 from engine.formats.livelink_origin import Origin, header_of, lost_frames
+from engine.formats.livelink_plain import plain_csv
 from engine.formats.livelink_sides import Judgement, exchange, judge
 from engine.formats.livelink_table import table
 from engine.formats.livelink_write import header, rows, write
@@ -46,9 +47,10 @@ def parse(
     content: bytes, path: Path, report: Callable[[float], None] | None = None, reading: Reading = AUTOMATIC
 ) -> Take:
     """Read what a Live Link Face CSV holds, like `read`; `path` is what errors call it."""
+    content, resaved = plain_csv(content, path)
     names, begin = _header(content, path)
     named = columns_of(tuple(names), path.name, swapped=False)
-    timecodes, values, lost, starts = table(content, begin, names, path, report)
+    timecodes, values, lost, starts = table(content, begin, (names, named.cells), path, report)
     if lost.all():
         raise FormatError(f"{path.name} holds no frame with a face.", "The tracker lost the face in every row.")
     _require_possible(values, names, path)
@@ -58,7 +60,7 @@ def parse(
     take = Take(
         *_resample(values, lost, clock, columns_of(tuple(names), path.name, swapped=swapped)),
         name=path.name,
-        notices=(*clock.notices, *_said_sides(judged, reading)),
+        notices=(*resaved, *clock.notices, *_said_sides(judged, reading)),
         start_s=clock.start_s,
     )
     return replace(take, origin=Origin(content, starts, clock.rows, lost, take.weights, take.rotations, swapped))
@@ -119,7 +121,7 @@ def _said_sides(judged: Judgement, reading: Reading) -> list[str]:
     if not judged.recorded:
         return [
             "Left and right of mouth and jaw are taken as named, since the mouth moves with its own side "
-            f"({judged.confidence}, r = {judged.agreement:+.2f})."
+            f"({judged.confidence})."
         ]
     if judged.confidence == "uncertain":
         return ["Left and right of mouth and jaw are taken as the app records; the motion does not tell for certain."]

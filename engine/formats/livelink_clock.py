@@ -304,8 +304,8 @@ def _said_rate(style: Style, rate: float, measured: float, quantum_s: float) -> 
 def _said_odd(odd: int, walked: _Walked) -> list[str]:
     said = []
     if odd:
-        what = "1 timecode is" if odd == 1 else f"{odd} timecodes are"
-        said.append(f"{what} out of order; those rows stand where their neighbours say.")
+        what, stand = ("1 timecode is", "its row stands") if odd == 1 else (f"{odd} timecodes are", "their rows stand")
+        said.append(f"{what} out of order; {stand} where the rows beside say.")
     if walked.uneven:
         return ["The clock runs unevenly; the rows are taken at even steps."]
     if walked.set_back:
@@ -323,11 +323,14 @@ def _said_missed(rows: npt.NDArray[np.int64], fps: float) -> list[str]:
     missed, lost = int(rows[-1]) + 1 - len(rows) - int(gone.sum()), int(gone.sum())
     said = []
     if missed:
-        said.append(f"{counted(missed, 'missed frame')} {plural(missed, 'was', 'were')} filled in by interpolation.")
+        said.append(
+            f"{counted(missed, 'missed frame')} {plural(missed, 'was', 'were')} filled in from the frames beside."
+        )
     if lost:
         gaps = len(runs(gone))
-        where = "a gap" if gaps == 1 else f"{gaps} gaps"
-        said.append(f"The file has no rows over {where} of {lost / fps:.2g} s; such frames are marked as lost.")
+        length_s = f"{lost / fps:.2f} s" if lost < 10 * fps else f"{lost / fps:,.0f} s"
+        where = f"a gap of {length_s}" if gaps == 1 else f"{gaps} gaps, {length_s} in all"
+        said.append(f"The file has no rows over {where}; the frames there are marked as lost.")
     return said
 
 

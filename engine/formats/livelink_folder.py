@@ -13,6 +13,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path, PurePosixPath
 
 from engine.errors import FormatError
@@ -88,8 +89,17 @@ def table_of(path: Path) -> Path:
     """Return the file in which the frames of a take are; the path itself where it is that, or a zip."""
     if path.suffix.lower() == ".zip" or _kind(path.name) in (CALIBRATED, RAW) or not is_one(path):
         return path
-    folder, like = (path, None) if _is_folder(path) else (path.parent, path.name)
+    folder, like = (_inner(path), None) if _is_folder(path) else (path.parent, path.name)
     return folder / _parts(_listed(folder), folder.name or str(folder), like).table
+
+
+def _inner(folder: Path) -> Path:
+    """Return the one folder in a folder of nothing else, as unzipping leaves it; else the folder itself."""
+    try:
+        inside = [entry for entry in islice(folder.iterdir(), MAX_FILES) if not entry.name.startswith((".", "__"))]
+    except OSError:
+        return folder
+    return inside[0] if len(inside) == 1 and inside[0].is_dir() and not inside[0].is_symlink() else folder
 
 
 def read(path: Path, report: Callable[[float], None] | None = None, reading: Reading = AUTOMATIC) -> Take:
@@ -157,7 +167,7 @@ def _checked(take: Take, parts: Parts, target_fps: float | None, reading: Readin
             notices = (f"Taken as {target_fps:g} fps, from {CARD}; the timecodes make no sense.", *kept, *said)
             return replace(take, fps=target_fps, notices=notices)
         if abs(target_fps / take.fps - 1) > SAME_RATE:
-            said.append(f"{CARD} says {target_fps:g} fps; the timecodes say {take.fps:.5g}, and were believed.")
+            said.append(f"{CARD} says {target_fps:g} fps, the timecodes {take.fps:.5g}; the timecodes are believed.")
     return replace(take, notices=(*take.notices, *said))
 
 

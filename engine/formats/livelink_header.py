@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,7 @@ ROTATIONS = (
 )
 ROTATION_INDEX = {name: index for index, name in enumerate(ROTATIONS)}
 DEFAULT_HEADER = ("Timecode", "BlendshapeCount", *(f"{name[0].upper()}{name[1:]}" for name in SHAPES), *ROTATIONS)
+KNOWN = {name.lower() for name in (*SHAPES, *ROTATIONS)}
 EXPECTED = "Retake reads the CSV files that Live Link Face records."
 Places = npt.NDArray[np.int64]
 
@@ -39,16 +41,29 @@ class Columns:
     rotations: Places
     rotation_cells: Places
 
+    @property
+    def cells(self) -> Places:
+        """The cells that hold numbers of a take, rising; what stands in others is the file's own affair."""
+        return np.sort(np.concatenate([self.shape_cells, self.rotation_cells]))
+
+
+def column_name(cell: str) -> str:
+    """Return the name of a column without case and separators, its side in full: `Eye_Blink_L` is `eyeblinkleft`."""
+    lower = re.sub(r"[_ ]l$", "left", re.sub(r"[_ ]r$", "right", cell.strip().lower()))
+    return re.sub(r"[\s_-]", "", lower)
+
 
 def columns_of(header: tuple[str, ...], name: str, *, swapped: bool) -> Columns:
     """Return where the values of a take stand; raises `FormatError`, which calls the file by its `name`.
 
     With `swapped`, left and right of mouth and jaw stand under each other's names.
     """
-    if [cell.lower() for cell in header[:2]] != ["timecode", "blendshapecount"]:
+    names = [column_name(cell) for cell in header]
+    if names[:2] != ["timecode", "blendshapecount"]:
         raise FormatError(f"{name} does not begin with the header of a Live Link Face take.", EXPECTED)
-    found = {cell.lower(): index for index, cell in enumerate(header) if index >= 2}
-    if len(found) != len(header) - 2:
+    ours = [(cell, index) for index, cell in enumerate(names) if cell in KNOWN]
+    found = dict(ours)
+    if len(found) != len(ours):
         raise FormatError(f"{name} names a column twice in its first row.")
     missing = [shape for shape in SHAPES if shape.lower() not in found and shape != "tongueOut"]
     if missing:

@@ -288,8 +288,8 @@ def _numbered(style: Style, fields: Array) -> Style:
     if len(fields) < 5 or len(np.unique(part[:SAMPLE])) < 3:
         return style
     frame = _whole_seconds(fields) * style.base + counts
-    # A genuine 59.94 fps from midnight on looks the same until the decimals wrap.
-    unclear = style.base == APP_BASE and frame[0] == 0 and part[0] == 0 and len(fields) < wrap
+    # A genuine 59.94 fps from a whole frame on looks the same until the decimals wrap.
+    unclear = style.base == APP_BASE and part[0] == 0 and len(fields) < wrap
     if not unclear and (_follows(part, frame, wrap) or _follows(part, np.arange(float(len(fields))), wrap)):
         ahead = Counter(int(each) for each in (part - frame) % wrap).most_common(1)[0][0]
         return replace(style, numbered=True, ahead=ahead)

@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.formats.atomic import write_bytes
 from engine.formats.livelink_clock import clock_of, timecodes_between
-from engine.formats.livelink_header import DEFAULT_HEADER, ROTATIONS, Columns, Places, columns_of
+from engine.formats.livelink_header import DEFAULT_HEADER, ROTATIONS, Columns, Places, column_name, columns_of
 from engine.formats.livelink_origin import Origin, lost_frames
 from engine.formats.livelink_sides import exchange_cells, recorded_name, written_recorded
 from engine.formats.livelink_timecode import Style
@@ -36,7 +36,7 @@ def write(take: Take, path: Path, sides: Sides = "automatic") -> None:
     if written_recorded(sides, swapped=swapped) == swapped:
         write_bytes(path, encode(take))
     else:
-        write_bytes(path, exchange_cells(_lines(encode(take)), names))
+        write_bytes(path, exchange_cells(_lines(encode(take)), [column_name(name) for name in names]))
 
 
 def encode(take: Take) -> Iterator[bytes]:

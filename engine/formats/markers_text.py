@@ -30,11 +30,15 @@ def lines_of(path: Path, expected: str) -> list[bytes]:
 
 
 def decoded(line: bytes, path: Path, expected: str) -> str:
-    """Return a header line as text; raises `FormatError` where it is too long or not UTF-8."""
+    """Return a header line, UTF-8 or Windows' Latin letters, as text; raises `FormatError` where it is too long or none."""
     if len(line) > MAX_HEADER_BYTES or max(line.count(mark) for mark in (b",", b"\t", b";")) > MAX_CELLS:
         raise FormatError(f"{path.name} has too many columns.", expected)
     try:
         return line.decode("utf-8")
+    except UnicodeDecodeError:
+        pass
+    try:
+        return line.decode("cp1252")
     except UnicodeDecodeError:
         raise FormatError(f"{path.name} is not a text file.", expected) from None
 

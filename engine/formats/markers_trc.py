@@ -10,7 +10,7 @@ import numpy as np
 
 from engine.errors import FormatError
 from engine.formats.atomic import write_bytes
-from engine.formats.capture import TO_MM, Markers, each_once
+from engine.formats.capture import TO_MM, Markers, each_once, unit_named
 from engine.formats.markers_text import decoded, lines_of, numbers
 
 EXPECTED = "A TRC file begins with PathFileType and names its rate, units and markers in the lines below."
@@ -35,9 +35,10 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     positions = table[:, 2:].reshape(len(body), len(names), 3)
     gap = ~np.isfinite(positions).all(axis=2) | (positions == 0).all(axis=2)
     positions[gap] = np.nan
-    scale = TO_MM.get(unit or settings.get("units", "mm").lower())
-    if scale is None:
-        raise FormatError(f"{path.name} is in the unit {settings['units'][:20]!r}.", "Retake reads mm, cm and m.")
+    found = unit or unit_named(settings.get("units", "mm"))
+    if found is None:
+        raise FormatError(f"{path.name} is in the unit {settings['units'][:20]!r}.", f"Use one of: {', '.join(TO_MM)}.")
+    scale = TO_MM[found]
     rows = _number(settings, "numframes", path)
     notices = (
         doubled

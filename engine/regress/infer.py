@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import cached_property, lru_cache, partial
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -19,26 +18,6 @@ from engine.regress.network import ALIGNMENT, REACH, AreaNetwork, from_config
 from engine.take import SHAPES, Array
 
 
-@dataclass(frozen=True, eq=False)
-class Answers:
-    """What the networks said of the same rows, asked about again and again, each time with some curves changed.
-
-    Attributes
-    ----------
-    of : by area, the curves its network read, (frames, controls), of which rows it spoke, its weights, (rows, shapes),
-        and how far its contacts are to be trusted, (rows, contacts)
-    """
-
-    of: dict[str, list[tuple[Array, slice, Array, Array]]] = field(default_factory=dict)
-
-    def find(self, area: str, asked: Array, rows: slice) -> tuple[Array, Array] | None:
-        """Return what an area's network said of these rows of these very curves, or None where it was not asked."""
-        for known, of, weights, trust in self.of.get(area, []):
-            if of == rows and np.array_equal(known, asked):
-                return weights, trust
-        return None
-
-
 class Regressor:
     """Controls to weights with the networks of each area; those of the extended controls run only where these are given.
 
@@ -51,16 +30,6 @@ class Regressor:
         self.networks = networks
         for network in networks.values():
             network.eval()
-
-    @cached_property
-    def limits(self) -> tuple[Array, Array]:
-        """The lowest and the highest that each of the eight controls, in mm, was recorded at."""
-        low, high = np.full(len(CONTROLS), -np.inf), np.full(len(CONTROLS), np.inf)
-        for area in self._areas(extended=False):
-            network = self.networks[area.name]
-            low[area.control_columns] = np.maximum(low[area.control_columns], network.low.numpy().ravel())
-            high[area.control_columns] = np.minimum(high[area.control_columns], network.high.numpy().ravel())
-        return low, high
 
     def infer(
         self,
@@ -90,19 +59,14 @@ class Regressor:
         land: bool = True,
         kept: Array | None = None,
         original: Array | None = None,
-        answers: Answers | None = None,
-        remember: bool = False,
     ) -> Array:
-        """Return rows [start, stop) of `infer`, looking no further than the networks can feel.
-
-        A network whose curves are among the `answers` does not run again; with `remember` the others join them.
-        """
+        """Return rows [start, stop) of `infer`, looking no further than the networks can feel."""
         first = max(0, (start - REACH) // ALIGNMENT * ALIGNMENT)
         last = min(len(controls), -(-(stop + REACH) // ALIGNMENT) * ALIGNMENT)
         weights = np.zeros((stop - start, len(SHAPES))) if kept is None else np.array(kept[start:stop])
         rows = slice(start - first, stop - first)
         seen = (controls[first:last], None if original is None else original[first:last])
-        trust = self._fill(weights, *seen, rows, full=full, answers=answers, remember=remember)
+        trust = self._fill(weights, *seen, rows, full=full)
         if not full:
             return weights
         made = np.clip(weights, 0.0, 1.0)
@@ -118,8 +82,6 @@ class Regressor:
         rows: slice,
         *,
         full: bool,
-        answers: Answers | None,
-        remember: bool,
     ) -> Array:
         """Put what the networks say of some rows of controls into weights, (rows, 52).
 
@@ -128,11 +90,8 @@ class Regressor:
         trust = np.zeros((len(weights), len(contacts.MEETING)))
         for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
             asked = controls[:, area.control_columns]
-            found = answers.find(area.name, asked, rows) if answers is not None and full else None
             known = None if original is None else original[:, area.control_columns]
-            said, trusted = found or self._ask(area.name, asked, known, rows, full=full)
-            if answers is not None and remember and found is None:
-                answers.of.setdefault(area.name, []).append((asked, rows, said, trusted))
+            said, trusted = self._ask(area.name, asked, known, rows, full=full)
             weights[:, area.shape_columns] = said
             trust[:, contacts.of_area(area.name)] = trusted
         return trust

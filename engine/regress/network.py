@@ -14,6 +14,7 @@ from torch.nn.functional import avg_pool1d, conv1d, elu, max_pool1d, pad
 LOOK = 24  # frames on either side that are scaled with an excess, and over which the scale comes and goes
 UNET_REACH = 24  # frames: one feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 through its convolutions and up to 3 through pooling
 REACH = 2 * UNET_REACH + 2 * LOOK + 4  # two U-Nets on what looks 2 * LOOK around, and 4 for median and velocity
+SHORT = 512  # batch * frames, below which a matrix product is the faster convolution; at 1000 it takes twice as long
 ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
 BEYOND = 0.005  # share of recorded frames that the full system holds to be further out than a face goes
 ROOM = 0.3  # of the usual bound, by which an edit may go further than the take, wherever that is
@@ -38,8 +39,23 @@ def _block(inputs: int, outputs: int) -> nn.Sequential:
 def _twice(x: Tensor, kernels: Sequence[Tensor]) -> Tensor:
     """Run a block."""
     first, bias, second, offset = kernels
-    x = elu(conv1d(x, first, bias, padding=1), inplace=True)
-    return elu(conv1d(x, second, offset, padding=1), inplace=True)
+    x = elu(_convolved(x, first, bias), inplace=True)
+    return elu(_convolved(x, second, offset), inplace=True)
+
+
+def _convolved(x: Tensor, kernel: Tensor, bias: Tensor) -> Tensor:
+    """Return what a convolution of width 1 or 3 makes of curves, (batch, n, frames), with zeros beyond their ends.
+
+    Of few frames as one matrix product: torch's own convolution then takes twice as long to set itself up as to work.
+    """
+    batch, count, frames = x.shape
+    width = kernel.shape[2]
+    if batch * frames > SHORT:
+        return conv1d(x, kernel, bias, padding=width // 2)
+    if width > 1:
+        wide = pad(x, (1, 1))
+        x = torch.stack([wide[..., :-2], x, wide[..., 2:]], dim=2).flatten(1, 2)
+    return torch.baddbmm(bias[:, None], kernel.reshape(1, -1, count * width).expand(batch, -1, -1), x)
 
 
 def _grown(x: Tensor) -> Tensor:
@@ -76,6 +92,7 @@ class UNet(nn.Module):
         # Run by hand: called as modules, networks this small spend a quarter of a drag step on the way to their kernels.
         blocks = (self.down1, self.down2, self.bottom, self.up2, self.up1)
         self._kernels = [list(block.parameters()) for block in blocks]
+        self._pointwise = [list(layer.parameters()) for layer in (self.linear, self.last)]
         self.register_buffer("mean", torch.zeros(1, config.inputs, 1))
         self.register_buffer("scale", torch.ones(1, config.inputs, 1))
 
@@ -88,8 +105,8 @@ class UNet(nn.Module):
         deep = _twice(max_pool1d(half, 2), bottom)  # (batch, wide, frames / 4)
         half = _twice(torch.cat([_grown(deep), half], dim=1), up2)
         fine = _twice(torch.cat([_grown(half), fine], dim=1), up1)
-        mapped: Tensor = self.linear(self.bent(x)) + self.last(fine)
-        return mapped
+        linear, last = self._pointwise
+        return _convolved(self.bent(x), *linear) + _convolved(fine, *last)
 
     def bent(self, x: Tensor) -> Tensor:
         """Return what the linear part sees of standardised inputs, (batch, inputs, frames): these and their waves."""

@@ -68,7 +68,7 @@ class FacePrior:
     fastest: Array
     faces: Array
     whole: npt.NDArray[np.bool_]
-    _balls: dict[tuple[int, ...], tuple[Array, Array, float]] = field(default_factory=dict)
+    _balls: dict[tuple[tuple[int, ...], float], tuple[Array, Array, float]] = field(default_factory=dict)
 
     def metric(self, stiffness: float) -> Array:
         """Return the covariance, (52, 52), of weights when moving the skin costs too: ``(S^-1 + stiffness G)^-1``."""
@@ -81,7 +81,7 @@ class FacePrior:
 
         They are of the controls `columns` alone: what no one asked of the others does not count.
         """
-        key = tuple(columns.tolist())
+        key = tuple(columns.tolist()), share
         if key not in self._balls:
             chosen = self.faces[:, columns] if MOUTH_ONLY[columns].all() else self.faces[self.whole][:, columns]
             mean = chosen.mean(axis=0)

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from engine.controls import ALL_INDEX
-from engine.extended import FaceMeasurer
+from engine.extended import Columns, FaceMeasurer, Gauges
 from engine.take import Array, Mask
 
-Columns = npt.NDArray[np.int64]
 _LIPS = ALL_INDEX["lips_vertical"]  # lids have too few shapes to meet point on point, and would go wide while shut
 
 
@@ -57,24 +55,31 @@ def project(
     ----------
     covariance : (52, 52), zero in the rows and columns of weights that shall not move
     """
-    current = np.array(weights)
-    low, high = np.minimum(weights, 0.0), np.maximum(weights, 1.0)
-    active = np.flatnonzero(hold.any(axis=1))
+    current, shapes = np.array(weights), np.flatnonzero(covariance.any(axis=0))
+    covariance = covariance[np.ix_(shapes, shapes)]
+    goal = _Goal(measurer.gauges(columns, shapes), columns, asked, hold)
     damping = np.full(len(weights), STEPS.first)
-    goal = _Goal(measurer, columns, asked, hold)
-    miss, slope = goal.at(current[active], active)
+    active = np.flatnonzero(hold.any(axis=1))
+    low, high = (
+        bound(weights[np.ix_(active, shapes)], limit) for bound, limit in ((np.minimum, 0.0), (np.maximum, 1.0))
+    )
+    vectors, miss = goal.missing(current[active], active)
     for _ in range(STEPS.rounds):
         far = np.abs(miss).max(axis=1, initial=0.0) > STEPS.met_mm
         if not far.any():
             break
-        active, miss, slope = active[far], miss[far], slope[far]
-        bounds = (low[active], high[active])
-        step = _step(slope, miss, damping[active], covariance=covariance, at=(current[active], *bounds))
-        tried = np.clip(current[active] + step, *bounds)
-        left, next_slope = goal.at(tried, active)
+        if not far.all():
+            active, vectors, miss, low, high = active[far], vectors[far], miss[far], low[far], high[far]
+        here = current[active]
+        slope = goal.slopes(vectors, here, active)
+        at = here[:, shapes]
+        step = _step(slope, miss, damping[active], covariance=covariance, at=(at, low, high))
+        here[:, shapes] = np.clip(at + step, low, high)
+        tried, left = goal.missing(here, active)
         nearer = (left**2).sum(axis=1) < (miss**2).sum(axis=1)
-        current[active[nearer]] = tried[nearer]
-        miss, slope = np.where(nearer[:, None], left, miss), np.where(nearer[:, None, None], next_slope, slope)
+        current[active[nearer]] = here[nearer]
+        vectors = np.where(nearer[:, None, None], tried, vectors)
+        miss = np.where(nearer[:, None], left, miss)
         damping[active] = np.maximum(damping[active] * np.where(nearer, STEPS.less, STEPS.more), STEPS.least)
     return current
 
@@ -86,47 +91,64 @@ class _Goal:
     `STEPS.contact_mm` is asked for, its three coordinates are, along the direction it has.
     """
 
-    def __init__(self, measurer: FaceMeasurer, columns: Columns, asked: Array, hold: Mask) -> None:
-        self._measurer, self._columns, self._asked = measurer, columns, asked
+    def __init__(self, gauges: Gauges, columns: Columns, asked: Array, hold: Mask) -> None:
+        self._gauges, self._asked = gauges, asked
         short: Mask = hold & (columns == _LIPS) & (asked < STEPS.contact_mm)
-        self._near = np.flatnonzero(short.any(axis=0))
-        self._short, self._plain = short[:, self._near], hold & ~short
+        self._near = np.flatnonzero(short.any(axis=0)).tolist()  # the lips, if they are among the columns
+        self._short, self._plain = short, hold & ~short
+        self._all = bool(self._plain.all())
 
-    def at(self, weights: Array, rows: Columns) -> tuple[Array, Array]:
-        """Return misses, (n, values), and slopes, (n, values, 52), of frames `rows`; zero where nothing is held."""
-        plain, asked = self._plain[rows], self._asked[rows]
-        reached, slope = self._measurer.jacobian(weights, self._columns)
-        miss, slope = np.where(plain, asked - reached, 0.0), slope * plain[:, :, None]
-        if not len(self._near):
-            return miss, slope
-        vectors, along = self._measurer.vectors(weights, self._columns[self._near])  # (n, near, 3)
-        length = np.linalg.norm(vectors, axis=2)
-        wanted = np.maximum(asked[:, self._near], 0.0) / np.maximum(length, 1e-9)
-        off = self._short[rows][:, :, None] * (wanted - 1.0)[:, :, None] * vectors
-        along = along * np.repeat(self._short[rows], 3, axis=1)[:, :, None]
-        return np.concatenate([miss, off.reshape(len(rows), -1)], axis=1), np.concatenate([slope, along], axis=1)
+    def missing(self, weights: Array, rows: Columns) -> tuple[Array, Array]:
+        """Return the vectors at weights, and misses, (n, values), of frames `rows`; zero where nothing is held."""
+        vectors = self._gauges.vectors(weights)
+        miss = self._asked[rows] - self._gauges.read(vectors)
+        if not self._all:
+            miss = np.where(self._plain[rows], miss, 0.0)
+        for column in self._near:
+            vector = self._gauges.vector(vectors, column)
+            length = np.maximum(np.sqrt((vector**2).sum(axis=1)), 1e-9)
+            longer = np.maximum(self._asked[rows, column], 0.0) / length - 1.0
+            miss = np.concatenate([miss, (self._short[rows, column] * longer)[:, None] * vector], axis=1)
+        return vectors, miss
+
+    def slopes(self, vectors: Array, weights: Array, rows: Columns) -> Array:
+        """Return the slopes, (n, values, shapes), at these vectors and weights; zero where nothing is held."""
+        joined = self._gauges.joined(weights)
+        slope = self._gauges.slopes(vectors, joined)
+        if not self._all:
+            slope = slope * self._plain[rows][:, :, None]
+        for column in self._near:
+            along = self._gauges.coordinate_slopes(column, joined) * self._short[rows, column, None, None]
+            slope = np.concatenate([slope, along], axis=1)
+        return slope
 
 
 def _step(slope: Array, miss: Array, damping: Array, *, covariance: Array, at: tuple[Array, Array, Array]) -> Array:
-    """Return the damped step, (frames, 52), that leaves weights at a limit where they would go beyond it.
+    """Return the damped step, (frames, shapes), that leaves weights at a limit where they would go beyond it.
 
-    `at` are weights and the least and the most that they may be, (frames, 52) each.
+    `at` are weights and the least and the most that they may be, (frames, shapes) each.
     """
     weights, low, high = at
-    free: Mask = np.ones(weights.shape, bool)
+    at_low, at_high = weights <= low, weights >= high
     step = _damped(slope, miss, covariance, damping)
+    free: Mask = np.ones(weights.shape, bool)
+    rows = np.arange(len(weights))
     for _ in range(STEPS.releases):
-        stuck: Mask = free & (((weights <= low) & (step < 0)) | ((weights >= high) & (step > 0)))
-        rows = np.flatnonzero(stuck.any(axis=1))
+        stuck: Mask = free[rows] & ((at_low[rows] & (step[rows] < 0)) | (at_high[rows] & (step[rows] > 0)))
+        rows = rows[stuck.any(axis=1)]
         if not len(rows):
             break
-        free &= ~stuck
+        free[rows] &= ~stuck[stuck.any(axis=1)]
         step[rows] = free[rows] * _damped(slope[rows] * free[rows, None, :], miss[rows], covariance, damping[rows])
     return step
 
 
 def _damped(slope: Array, miss: Array, covariance: Array, damping: Array) -> Array:
-    spread = slope @ covariance  # (frames, columns, 52)
-    gram = spread @ slope.transpose(0, 2, 1) + damping[:, None, None] * np.eye(slope.shape[1])
-    pull = np.linalg.solve(gram, miss[..., None])  # (frames, columns, 1)
-    return np.asarray((spread * pull).sum(axis=1))
+    _, values, shapes = slope.shape
+    spread = (slope.reshape(-1, shapes) @ covariance).reshape(slope.shape)  # (frames, values, shapes)
+    if values == 1:
+        gram = (spread[:, 0] * slope[:, 0]).sum(axis=1) + damping
+        return np.asarray(spread[:, 0] * (miss[:, 0] / gram)[:, None])
+    gram = spread @ slope.transpose(0, 2, 1) + damping[:, None, None] * np.eye(values)
+    pull = np.linalg.solve(gram, miss[..., None])  # (frames, values, 1)
+    return np.asarray((pull.transpose(0, 2, 1) @ spread)[:, 0])

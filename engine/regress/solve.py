@@ -14,6 +14,7 @@ At the end of an edit, where nothing is asked, its change fades over `feather_s`
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -53,6 +54,7 @@ _CORNERS = [
 _UPRIGHT = [ALL_INDEX[name] for name in ("lips_vertical", "nose_to_lip", "chin_to_lip")]
 _SIGNED = np.array([control.signed for control in ALL_CONTROLS])
 FADE_FROM = 0.1  # of the largest change asked; its place, unlike that of the first change, is the same at any rate
+KNOWN_FRAMES = 256  # up to which the matrix of a spline is kept; it grows with the square of them
 ASKED_MM = 1e-7  # a departure from what is there that is one
 
 
@@ -212,19 +214,21 @@ class Solver:
     def _area(
         self, weights: Array, target: Array, columns: npt.NDArray[np.int64], hold: Array, covariance: Array
     ) -> Array:
-        whole = hold >= 1.0
-        landed = project(weights, target, columns, hold=whole, covariance=covariance, measurer=self._measurer)
-        part = (hold > 0) & ~whole
-        rows = np.flatnonzero(part.any(axis=1))
-        if not len(rows):
-            return landed
+        whole, landed = hold >= 1.0, weights
         # What is held in part is brought by that part from where it would go by itself; from the same face as what is held
-        # fully, so that one turns into the other.
-        free = self._measurer.measure(landed[rows])[:, columns]
-        wanted = free + hold[rows] * (target[rows] - free)
-        landed[rows] = project(
-            weights[rows], wanted, columns, hold=hold[rows] > 0, covariance=covariance, measurer=self._measurer
-        )
+        # fully, so that one turns into the other. Where nothing is held fully, that face is the one there is.
+        partly = (hold > 0) & ~whole
+        first = np.asarray(whole.any(axis=1, keepdims=True))
+        for now in (np.where(first, whole, partly), (hold > 0) & (first & partly.any(axis=1, keepdims=True))):
+            rows = np.flatnonzero(now.any(axis=1))
+            if len(rows):
+                at = landed[rows]
+                own = self._measurer.measure(at)[:, columns]
+                wanted = np.where(whole[rows], target[rows], own + hold[rows] * (target[rows] - own))
+                landed = np.array(landed)
+                landed[rows] = project(
+                    weights[rows], wanted, columns, hold=now[rows], covariance=covariance, measurer=self._measurer
+                )
         return landed
 
 
@@ -272,4 +276,12 @@ def _between(curves: Array, at: Array) -> Array:
     """Return curves, (frames, n), at fractional frames, on a cubic spline through them."""
     if len(curves) < 2:
         return np.repeat(curves[:1], len(at), axis=0)
-    return np.asarray(CubicSpline(np.arange(len(curves)), curves)(at))
+    if len(curves) > KNOWN_FRAMES:
+        return np.asarray(CubicSpline(np.arange(len(curves)), curves)(at))
+    return np.asarray(_spline(len(curves), at.tobytes()) @ curves)
+
+
+@lru_cache(maxsize=8)
+def _spline(frames: int, at: bytes) -> Array:
+    """Return the matrix, (places, frames), of the spline through frames, which stays the same while an edit is dragged."""
+    return np.asarray(CubicSpline(np.arange(frames), np.eye(frames))(np.frombuffer(at)))

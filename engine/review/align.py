@@ -67,23 +67,26 @@ def align(before: Take, after: Take, *, offset_s: float | None = None) -> Alignm
     """Return where `after` lies on the clock of `before`.
 
     An offset that is given wins, then timecodes under which both move alike. Else the lag with the highest normalised
-    correlation of all 52 curves is taken, unless both have one length and rate and move alike from the start, as edits do.
+    correlation of all 52 curves is taken, unless both have one length and rate, as edits do, and either move alike from
+    the start or nowhere: of a take whose frames are mostly lost the motion tells nothing.
 
     Raises `EditError` where an offset leaves no common frame.
     """
     if offset_s is not None:
         _require_overlap(before, after, offset_s)
         return Alignment(offset_s, "offset", _correlation_at(before, after, offset_s))
+    same_clock = before.fps == after.fps and len(before) == len(after)
     if before.start_s > 0 and after.start_s > 0:
         told = after.start_s - before.start_s
         if _overlap_s(before, after, told) >= _needed_s(before, after):
             correlation = _correlation_at(before, after, told)
-            if correlation >= Tuning.alike:
+            if correlation >= Tuning.alike or (same_clock and abs(told) * after.fps < 0.5):
                 return Alignment(told, "timecode", correlation)
     together = _correlation_at(before, after, 0.0)
     lag = _best_lag(before, after)
     correlation = _correlation_at(before, after, lag)
-    same_clock = before.fps == after.fps and len(before) == len(after)
+    if same_clock and correlation < Tuning.alike:
+        return Alignment(0.0, "start", together)
     if together >= Tuning.alike and (same_clock or together >= correlation):
         return Alignment(0.0, "start", together)
     return Alignment(lag, "correlation", correlation)
@@ -138,7 +141,7 @@ def _best_lag(before: Take, after: Take) -> float:
     """Return the offset in seconds with the highest correlation over a long enough overlap.
 
     ``r(l) = sum_t a(t + l) b(t) / sqrt(sum_t a(t + l)^2 sum_t b(t)^2)`` over the frames both have at lag l, with each
-    curve's mean over its whole take removed.
+    curve's mean over its whole take removed; 0 where nothing moves alike.
     """
     from scipy.signal import correlate  # a third of a second to load, and the window should be seen first
 
@@ -154,4 +157,4 @@ def _best_lag(before: Take, after: Take) -> float:
     power = np.sqrt((energy_a[last] - energy_a[first]) * (energy_b[last - lags] - energy_b[first - lags]))
     long_enough = (last - first) >= _needed_s(before, after) * MODEL_FPS - 1
     score = np.where(long_enough & (power > 1e-9), product / np.maximum(power, 1e-9), -1.0)
-    return float(lags[np.argmax(score)] / MODEL_FPS)
+    return float(lags[np.argmax(score)] / MODEL_FPS) if score.max() > 0 else 0.0

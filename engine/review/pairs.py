@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from engine.errors import EditError
-from engine.formats import FORMATS, read_take
+from engine.formats import FORMATS, audio, read_take
 from engine.formats.reading import Reading
 from engine.project import ENDING, Project, replay
-from engine.quality import Flag, Seen, flags_of, seen_of
+from engine.quality import Flag, Seen, flags_of, seen_of, sound_of
 from engine.review.changes import Edited, compare
 from engine.review.report import Remark, Review
 from engine.take import Take
@@ -58,9 +58,16 @@ def review(before: Path | None, after: Path, *, offset_s: float | None = None, r
     )
 
 
-def flags(path: Path, reading: Reading = AS_IT_IS) -> tuple[Flag, ...]:
-    """Return the automatic findings of a take, or of a project with its edits."""
-    return flags_of(_open(path, reading).seen)
+def flags(path: Path, reading: Reading = AS_IT_IS, *, sound: bool = False) -> tuple[Flag, ...]:
+    """Return the automatic findings of a take, or of a project with its edits; with `sound`, of the one beside it too.
+
+    Raises `EngineError` where the take or that sound cannot be read.
+    """
+    seen = _open(path, reading).seen
+    heard = audio.beside(path) if sound else None
+    if heard is not None:
+        seen = replace(seen, sound=sound_of(audio.read(heard), fps=seen.fps))
+    return flags_of(seen)
 
 
 def pairs(folder: Path) -> list[tuple[Path, Path]]:

@@ -51,11 +51,11 @@ _IPA = {
     "ow": "o ow oʊ ou əʊ əw ɵ ø ɤʊ",
     "ah": "ə ʌ ɜ ɝ ɚ ɘ ɤ",
     "uw": "u ʊ ʉ y ʏ aw aʊ au ᵿ",
-    "jh": "dʒ dʑ dʐ ɟ ɟʝ ʥ ʤ",
+    "jh": "dʒ dʑ dʐ ɖʐ ɟ ɟʝ ʥ ʤ",
     "kg": "k ɡ g ŋ c ç x ɣ q ɢ χ ħ ʕ ʔ h ɦ ɲ ɴ ɰ ɠ ʛ ʜ ʢ ʡ ʟ ɧ kx",
     "tn": "t d n l ɾ ɫ ʎ ɬ ɮ ɭ ʈ ɖ ɳ ɗ ɺ ᶑ tɬ dɮ",
     "sz": "s z ts dz ʦ ʣ",
-    "sh": "ʃ ʒ tʃ ʂ ʐ ɕ ʑ tɕ tʂ cç ʧ ʨ",
+    "sh": "ʃ ʒ tʃ ʂ ʐ ɕ ʑ tɕ tʂ ʈʂ cç ʧ ʨ",
     "th": "θ ð tθ dð",
     "fv": "f v ɱ ʋ ⱱ",
     "mbp": "m b p ɓ ɸ β ʙ pf bv ʘ",
@@ -76,10 +76,11 @@ Tθ t`ʈ Wʍ x\ɧ z`ʐ z\ʑ Zʒ 4ɾ 5ɫ <\ʢ >\ʡ I\ᵻ U\ᵿ
 """
 _XSAMPA = {pair[:-1]: pair[-1] for pair in _XSAMPA_PAIRS.split()}
 _XSAMPA_TOKEN = re.compile("|".join(map(re.escape, sorted(_XSAMPA, key=len, reverse=True))) + "|[a-z]|(.)", re.DOTALL)
-_XSAMPA_MARK = re.compile(r"_(?:[?BHL]\\|.)|[:\"%~='^`.*|]|-\\")  # diacritics, length, stress, nasality, syllables
+_XSAMPA_MARK = re.compile(r"_(?:[?BHL]\\|.)|[:\"%~='^`.*|+]|-\\")  # diacritics, length, stress, nasality, syllables
 _STRESS = re.compile(r"(?<=[A-Z])[012]$")  # behind a vowel
 _TONE = re.compile(r"(?<=[^\W\d])[0-9]+$")
 _XSAMPA_TIERS = ("mau", "sampa", "phonalign")
+_PLACE = re.compile(r"(?<=[^\W_])_[BIES]$")  # in the word, as Kaldi and Gentle mark it: beginning, inside, end, alone
 MAX_LABEL = 40  # characters; no phone is longer
 MAX_LABELS = 2_000  # that are looked at; no language has as many phones, with all their marks
 
@@ -102,6 +103,8 @@ def class_in(label: str, alphabet: Alphabet) -> str | None:
         return None
     if text.lower() in _SILENT:
         return "sil"
+    if alphabet != "x-sampa":
+        text = _PLACE.sub("", text)
     if alphabet == "arpabet":
         return ARPABET.get(text.upper()) or ARPABET.get(_STRESS.sub("", text.upper()))
     return _ipa_class(from_xsampa(text) if alphabet == "x-sampa" else text)

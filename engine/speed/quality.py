@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.controls import bundled_measurer
 from engine.performance.degrade import Faults, degrade
-from engine.quality import Seen, flags_after, flags_of
+from engine.quality import Seen, Sound, flags_after, flags_of
 from engine.speed import Speed, percentile_ms, performance_of
 
 FPS, DURATION_S = 60.0, 3600.0
@@ -15,14 +15,27 @@ EDIT_FRAMES = 60
 
 def measure() -> list[Speed]:
     """Measure a full pass over an hour as a tracker delivers it, and one near an edit in the middle."""
-    weights = performance_of(DURATION_S, FPS).weights
-    frame = np.arange(len(weights))
-    tracked = degrade(weights, frame / FPS, Faults(), np.random.default_rng(0))
+    performance = performance_of(DURATION_S, FPS).weights
+    frame = np.arange(len(performance))
+    tracked = degrade(performance, frame / FPS, Faults(), np.random.default_rng(0))
     controls = bundled_measurer().measure(tracked.weights)
     asked = np.where(frame[:, None] % 600 < 20, controls + 3.0, np.nan)
-    seen = Seen(tracked.weights, controls, FPS, tracked.lost, asked, controls)
+    original = np.where(frame[:, None] % 3000 < 60, performance, tracked.weights)  # 72 edits
+    turned = np.radians(20 * np.sin(frame[:, None] / FPS * np.array([1.0, 0.7, 0.4])))
+    sound = Sound(np.abs(controls[:, 0]) + 1.0, DURATION_S)
+    seen = Seen(
+        tracked.weights,
+        controls,
+        FPS,
+        tracked.lost,
+        asked,
+        controls,
+        original_weights=original,
+        rotations=turned,
+        sound=sound,
+    )
     flags = flags_of(seen)
-    middle = len(weights) // 2
+    middle = len(performance) // 2
     return [
         Speed("flags_60min_s", percentile_ms(lambda _: flags_of(seen), 5, percentile=50) / 1e3, "s", 1.0),
         Speed(

@@ -282,9 +282,10 @@ def _layouts(folder: Path) -> Iterator[tuple[str, bytes]]:
 
 
 def _read_layout(path: Path) -> None:
+    from engine.character import bundled
     from engine.formats import markers_layout
 
-    markers_layout.read(path, vertices=1000)
+    markers_layout.read(path, head=bundled())
 
 
 def _packets(folder: Path) -> Iterator[tuple[str, bytes]]:

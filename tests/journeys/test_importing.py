@@ -71,7 +71,7 @@ def test_the_line_tells_rate_sides_and_reasons(qtbot: QtBot, window: MainWindow,
     assert line.isVisible() and line.name.text() == "leaning.csv"
     assert (line.rate.currentText(), line.rate_reason.text()) == ("30 fps", "from timecodes")
     assert (line.sides.currentText(), line.sides_reason.text()) == ("automatic: as the app records", "sure")
-    assert "sixtieths" in line.rate.toolTip() and "r = -" in line.sides.toolTip()
+    assert "sixtieths" in line.rate.toolTip() and "By the motion" in line.sides.toolTip()
     QTest.mouseClick(line.hide_button, LEFT)
     assert line.isHidden() and not window.actions_by_name["show_import"].isChecked()
     window.actions_by_name["show_import"].trigger()

@@ -92,7 +92,7 @@ def test_dragging_back_brings_back_bit_for_bit(qtbot: QtBot, window: MainWindow)
     """Two strokes are one wish of the take below; a second curve in between stays as it was asked."""
     session = window.session
     before = session.take.weights.copy()
-    window.session.set_brush(radius_s=10 / window.session.take.fps)
+    window.session.set_brush(radius_s=1 / 3)
     pull(qtbot, window, 150, 4.0)
     first = session.take.weights.copy()
     assert np.abs(first - before).max() > 0.01

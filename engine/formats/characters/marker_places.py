@@ -14,6 +14,7 @@ from scipy.spatial.distance import cdist
 from engine.character import Character, bundled
 from engine.errors import EditError
 from engine.formats.characters.marker_table import MarkerMatch, MarkerTable
+from engine.formats.characters.marker_words import words_of
 from engine.formats.characters.placing import place_rest
 from engine.manifold.pose import fit_similarity
 from engine.spacetime.layout import MARKERS, standard
@@ -21,6 +22,7 @@ from engine.take import Array, Mask
 from engine.words import counted
 
 Indices = npt.NDArray[np.int64]
+FEWEST_BY_WORDS = 4  # markers whose names tell how the head is turned
 FEWEST_BY_PLACE = 8  # markers whose places alone tell a face
 ROUNDS, REFINED = 12, 8  # of pairing and fitting: alike in all directions, then stretched
 STRETCH = (0.75, 1.33)  # of one axis against the others: faces differ so much and no more
@@ -73,6 +75,8 @@ def match_markers(points: Array, names: Sequence[str]) -> MarkerTable:
         return _table(names, by_name, {}, np.eye(3))
     rows: Indices = np.flatnonzero(seen)
     if len(rows) < FEWEST_BY_PLACE:
+        if (table := _by_words(points, names, seen, rest)) is not None:
+            return table
         raise EditError(
             f"Only {len(known)} of the {counted(len(names), 'marker')} called like a landmark, too few to find the others.",
             "Name a landmark file that says which vertex carries which marker.",
@@ -82,6 +86,8 @@ def match_markers(points: Array, names: Sequence[str]) -> MarkerTable:
     laid, turn, away = _laid(points[rows], rest, ALIEN * apart * alien)
     reach = np.where(meant, NEAR_NAMED, NEAR)
     if away > LIKE_A_FACE * apart:
+        if (table := _by_words(points, names, seen, rest)) is not None:
+            return table
         raise EditError(
             "The markers do not lie on a face as its landmarks do.",
             "Choose a frame in which the face is at rest, or name a landmark file for them.",
@@ -98,6 +104,20 @@ def _by_name(names: Sequence[str]) -> dict[int, str]:
         if landmark and index not in found and landmark not in found.values():
             found[index] = landmark
     return found
+
+
+def _by_words(points: Array, names: Sequence[str], seen: Mask, rest: Array) -> MarkerTable | None:
+    """Return the markers whose names say in any words which landmark they are, where places tell nothing; None for few."""
+    meant = {words_of(landmark): landmark for landmark in MARKERS}
+    found: dict[int, str] = {}
+    for index, name in enumerate(names):
+        landmark = meant.get(words_of(name), "")
+        if landmark and seen[index] and landmark not in found.values():
+            found[index] = landmark
+    if len(found) < FEWEST_BY_WORDS:
+        return None
+    goals = rest[[MARKERS.index(landmark) for landmark in found.values()]]
+    return _table(names, found, {}, fit_similarity(points[list(found)], goals[None], mirrored=False).turn[0])
 
 
 def _plain(name: str) -> str:

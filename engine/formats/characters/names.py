@@ -5,8 +5,9 @@ from __future__ import annotations
 import difflib
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import takewhile
 
 from engine.errors import EditError
 from engine.take import SHAPES
@@ -18,6 +19,7 @@ EXACT, RESPELT, OTHER_NAME = (
 )  # likeness of ARKit's own name, of another spelling, of another word for it
 SURE = 0.8  # likeness from which a guess is taken without asking
 WORTH_SHOWING = 0.6
+FEWEST_SHARING = 4  # names of a file that begin alike, for that to be no part of them
 LONGEST = 64  # letters; comparing takes time that grows with their square
 # Splits of one ARKit shape into two halves, and other programs' names for a shape.
 HALVES = ("browInnerUp", "cheekPuff", "mouthFunnel", "mouthPucker")
@@ -75,16 +77,23 @@ def reviewed(matches: Iterable[Match]) -> list[Match]:
     return [row for row in rows if not row.certain or users[row.shape] > 1]
 
 
-def plain(name: str) -> str:
-    """Return a name without case, separators, prefixes and numbering, sides in full and at the end."""
-    last = re.split(r"[.:|/]", name)[-1] if not re.search(r"[.:|/]\d*$", name) else name
-    words = re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+", last)
-    lower = [word.lower() for word in words if not word.isdigit()]
+def plain(name: str, *, shared: int = 0) -> str:
+    """Return a name without case, separators, prefixes and numbering, sides in full and at the end.
+
+    `shared` words before it, such as a mesh's name, are left out.
+    """
+    lower = _words(name)[shared:]
     while len(lower) > 1 and lower[0] in _LEADING:
         lower = lower[1:]
     sides = [_SIDE.get(word, word) for word in lower if _SIDE.get(word, word) in ("left", "right")]
     rest = [word for word in lower if _SIDE.get(word, word) not in ("left", "right")]
     return "".join(rest + sides)
+
+
+def _words(name: str) -> list[str]:
+    last = re.split(r"[.:|/]", name)[-1] if not re.search(r"[.:|/]\d*$", name) else name
+    words = re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+", last)
+    return [word.lower() for word in words if not word.isdigit()]
 
 
 _PLAIN = {plain(shape): shape for shape in SHAPES}
@@ -99,19 +108,29 @@ def match_names(names: Iterable[str]) -> list[Match]:
     Where several names want one shape, the likeliest has it wherever it stands in the file: ARKit's own name before
     another spelling, that before another word, that before a likeness. The two halves of a shape share it.
     """
-    guesses = [_guess(name) for name in names]
+    names = list(names)
+    shared = _shared(names)
+    guesses = [_guess(name, shared) for name in names]
     order = sorted(range(len(guesses)), key=lambda row: -guesses[row].likeness)
     taken: dict[str, Match] = {}
     for row in order:
         guess = guesses[row]
         first = taken.setdefault(guess.shape, guess) if guess.shape else guess
-        if first is not guess and not _halves(guess, first):
+        if first is not guess and not _halves(guess, first, shared):
             guesses[row] = replace(guess, shape="", likeness=0.0, rival=guess.shape if guess.sure else "")
     return guesses
 
 
-def _guess(name: str) -> Match:
-    key = plain(name)
+def _shared(names: Sequence[str]) -> int:
+    """Return how many words stand before every name, as a mesh's own does; 0 where any is a known name as it is."""
+    if len(names) < FEWEST_SHARING or any(plain(name) in _KNOWN for name in names):
+        return 0
+    heads = zip(*(_words(name)[:-1] for name in names), strict=False)
+    return sum(1 for _ in takewhile(lambda words: len(set(words)) == 1, heads))
+
+
+def _guess(name: str, shared: int) -> Match:
+    key = plain(name, shared=shared)
     if name in SHAPES:
         return Match(name, name, EXACT)
     if key in _PLAIN:
@@ -138,8 +157,8 @@ def _most_alike(key: str, pool: Iterable[str]) -> tuple[float, str]:
     return OTHER_NAME * best[0], best[1]
 
 
-def _halves(one: Match, other: Match) -> bool:
-    keys = sorted((plain(one.source), plain(other.source)))
+def _halves(one: Match, other: Match, shared: int) -> bool:
+    keys = sorted(plain(row.source, shared=shared) for row in (one, other))
     return keys == [f"{plain(one.shape)}left", f"{plain(one.shape)}right"]
 
 

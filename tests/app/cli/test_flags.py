@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import soundfile
 
 from app import cli
 from engine import project
@@ -71,3 +72,14 @@ def test_bad_input_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture
         assert cli.run(arguments) == 2
         said = capsys.readouterr().err
         assert said.count("\n") == 1 and "Traceback" not in said
+
+
+def test_the_sound_tells_that_a_take_is_too_short(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    take = read_take(demo.BUNDLED)
+    sound = tmp_path / "sound.wav"
+    soundfile.write(sound, np.zeros(round(8_000 * (take.duration_s + 1.0))), 8_000)
+    assert cli.run(["flags", DEMO, "--audio", str(sound)]) == 0
+    (short,) = [row for row in rows(capsys.readouterr().out) if row["kind"] == "short"]
+    assert "1.00 s" in short["sentence"]
+    assert cli.run(["flags", DEMO, "--audio", str(sound), "--audio-offset", "-1.0"]) == 0
+    assert not [row for row in rows(capsys.readouterr().out) if row["kind"] == "short"]

@@ -4,7 +4,9 @@ import json
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
+import soundfile
 
 from app import cli
 from engine.formats import read_take, write_take
@@ -18,8 +20,8 @@ DEMO = str(demo.BUNDLED)
 def edited(tmp_path: Path) -> Path:
     take = read_take(demo.BUNDLED)
     weights = take.weights.copy()
-    weights[60:80, SHAPE_INDEX["jawOpen"]] += 0.3
-    weights[200, SHAPE_INDEX["mouthSmileLeft"]] += 0.7
+    weights[60:80, SHAPE_INDEX["jawOpen"]] += 0.3 * np.sin(np.linspace(0, np.pi, 22)[1:-1]) ** 2
+    weights[200, SHAPE_INDEX["mouthSmileLeft"]] += 0.3
     write_take(take.with_weights(weights), tmp_path / "edited.csv")
     return tmp_path / "edited.csv"
 
@@ -55,6 +57,16 @@ def test_check_tells_a_pipeline_by_its_exit_code(
     assert cli.run(["check", str(broken), str(edited), "--json"]) == 2
     first, second = json.loads(capsys.readouterr().out)["takes"]
     assert "error" in first and second["flags"]
+
+
+def test_check_looks_at_the_sound_beside_a_take(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    take = tmp_path / "take.csv"
+    shutil.copy(DEMO, take)
+    seconds = read_take(take).duration_s + 1
+    soundfile.write(tmp_path / "take.wav", np.zeros(round(8_000 * seconds)), 8_000)
+    assert cli.run(["check", str(take), "--fail-on", "short", "--no-sound"]) == 0
+    assert cli.run(["check", str(take), "--fail-on", "short"]) == 1
+    assert "1 x ends before its sound" in capsys.readouterr().out
 
 
 def test_a_queue_writes_a_report_of_each_pair_and_goes_on_past_a_broken_one(

@@ -15,7 +15,7 @@ from app.retarget.sides import sides
 from app.retarget.strengths import STEPS, position, strength_at
 from app.session.commands import restored
 from engine.character import Character, bundled
-from engine.controls import bundled_measurer
+from engine.extended import bundled_face
 from engine.formats.capture import Markers
 from engine.formats.markers import write
 from engine.project import replay
@@ -113,7 +113,7 @@ def test_a_project_that_is_opened_again_shows_the_head_it_was_kept_on(
     assert session.character is None
     state = replay(contents)
     aimed.retargeting._kept_heads.forget()  # as in a program that was just started
-    measured = tuple(bundled_measurer().measure(take.weights) for take in (contents.original, state.take))
+    measured = tuple(bundled_face().measure(take.weights) for take in (contents.original, state.take))
     session.restore(contents, None, restored(session, contents, state), state, measured)
     qtbot.waitUntil(lambda: session.character is not None, timeout=20_000)
     assert session.character.name == "broad"

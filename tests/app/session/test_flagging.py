@@ -11,6 +11,7 @@ from app.session.commands import EditCommand, VisemesCommand
 from app.session.flagging import Flagging
 from engine.editing import Patch
 from engine.formats import read_take
+from engine.formats.audio import Audio
 from engine.performance import demo
 from engine.quality import flags_of, seen_of
 from engine.retouch import paste
@@ -73,3 +74,14 @@ def test_a_take_filled_where_it_was_lost_has_no_flag_there(qtbot: QtBot, session
     filled = Patch.between(session.take, session.take.with_rows(252, session.take.weights[252:276] + 0.01), (252, 276))
     session.undo.push(EditCommand(session, filled, "fill"))
     assert up_to_date(qtbot, session) and not session.flags
+
+
+def test_sound_that_is_attached_is_listened_to_and_forgotten_once_it_is_detached(
+    qtbot: QtBot, session: Session
+) -> None:
+    assert up_to_date(qtbot, session)
+    silence = np.zeros(round(8_000 * (session.take.duration_s + 1)), np.float32)
+    session.attach_audio(Audio(silence, 8_000))
+    qtbot.waitUntil(lambda: "short" in {flag.kind for flag in session.flags or ()}, timeout=10_000)
+    session.attach_audio(None)
+    assert up_to_date(qtbot, session)

@@ -176,9 +176,12 @@ def test_times_before_zero_and_in_powers_of_ten_are_read(tmp_path: Path) -> None
         ("ORT-MAU", "S T N <p:> tS a~ P", "sh th kg sil sh aa fv"),
         ("phones", "S t @ r\\ V: I", "sh tn ah r ah iy"),
         ("MAU", "ʃ ə p", "sh ah mbp"),
+        ("MAU", "E+ h 2: <nib>", "eh kg ow sil"),
+        ("phones", "ʈʂ ɖʐ ʂ a˥˩", "sh jh sh aa"),
+        ("phones", "M_B AA1_I hh_I ow_E SIL_S", "mbp aa kg ow sil"),
         ("visemes", "sil mbp aa tn kg", "sil mbp aa tn kg"),
     ],
-    ids=["ipa", "arpabet", "timit", "maus", "x-sampa", "maus in ipa", "classes"],
+    ids=["ipa", "arpabet", "timit", "maus", "x-sampa", "maus in ipa", "maus in dutch", "mandarin", "kaldi", "classes"],
 )
 def test_alphabets_are_told_apart_by_case_and_tier(tmp_path: Path, name: str, labels: str, expected: str) -> None:
     heard: list[str] = []

@@ -26,7 +26,7 @@ def clocked(seconds: Fraction | int) -> str:
     return f"{whole // 3600:02d}:{whole // 60 % 60:02d}:{whole % 60:02d}"
 
 
-def sixtieths(frame: int, rate: Fraction) -> str:
+def sixtieths(frame: int | Fraction, rate: Fraction) -> str:
     ticks = Fraction(round(frame / rate * 60_000), 1000)
     return f"{clocked(ticks / 60)}:{float(ticks % 60):06.3f}"
 
@@ -255,6 +255,14 @@ OTHERS: dict[str, tuple[list[str], float]] = {
     "microseconds": ([f"{clocked(Fraction(r, 30))}:{r % 30 * 33_333:06d}" for r in range(200)], 30),
     "minutes and seconds": ([f"{row // 1800:02d}:{row / 30 % 60:06.3f}" for row in range(2000)], 30),
     "hundredths": ([f"{clocked(Fraction(row, 25))}:{row % 25 * 4:02d}" for row in range(300)], 25),
+    "59.94 from a whole hour": (
+        [sixtieths(row + 3600 * exact(59.94), exact(59.94)) for row in range(300)],
+        60_000 / 1001,
+    ),
+    "59.94 from a whole frame": (
+        [sixtieths(row + 36_007 * exact(59.94), exact(59.94)) for row in range(300)],
+        60_000 / 1001,
+    ),
     "the app's 59.94": ([sixtieths(row + 7777, exact(59.94)) for row in range(300)], 60_000 / 1001),
 }
 
@@ -354,3 +362,14 @@ def test_whatever_stands_there_rows_keep_their_order(seed: int) -> None:
         assert 0 < clock.fps < 1001 and 0 <= clock.start_s <= 86_400, codes
         assert clock.rows[0] == 0 and (np.diff(clock.rows) >= 1).all() and len(clock.rows) == count
         assert len(timecodes_between(texts, clock.rows, [0, int(clock.rows[-1])], fps=clock.fps)) == 2
+
+
+@pytest.mark.parametrize(
+    ("gaps", "said"), [([150], "a gap of 150 s"), ([1], "a gap of 1.00 s"), ([2, 2], "2 gaps, 4.00 s in all")]
+)
+def test_gaps_are_said_with_their_length_in_plain_numbers(gaps: list[int], said: str) -> None:
+    times = np.arange(120) / 30
+    for place, gap_s in enumerate(gaps):
+        times[40 * (place + 1) :] += gap_s
+    notices = clock_of([f"{time:.4f}".encode() for time in times]).notices
+    assert any(said in notice for notice in notices), notices

@@ -52,6 +52,17 @@ def test_any_part_opens_the_calibrated_take(tmp_path: Path, file: str) -> None:
     assert livelink_folder.table_of(folder / file).name == "MySlate_1_iPhone_cal.csv"
 
 
+def test_a_folder_in_a_folder_as_unzipping_leaves_it_is_opened(tmp_path: Path) -> None:
+    (tmp_path / "MySlate_1" / "__MACOSX").mkdir(parents=True)
+    handed_over(tmp_path / "MySlate_1" / "MySlate_1")
+    take = read_take(tmp_path / "MySlate_1")
+    assert opened(take) == CALIBRATED
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "link").symlink_to(tmp_path / "MySlate_1" / "MySlate_1")
+    with pytest.raises(FormatError, match="no take"):
+        read_take(tmp_path / "out")
+
+
 @pytest.mark.parametrize("prefix", ["", "MySlate_1/", "a/b/"])
 def test_a_zip_is_the_same_take(tmp_path: Path, prefix: str) -> None:
     path = zipped(handed_over(tmp_path / "MySlate_1"), tmp_path / "take.zip", prefix)

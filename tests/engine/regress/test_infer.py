@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 import torch
 
-from engine.controls import CONTROL_INDEX
 from engine.regress.areas import AREAS, EXTENDED_AREAS
-from engine.regress.infer import Answers, Regressor
+from engine.regress.infer import Regressor
 from engine.regress.network import AreaNetwork, UNetConfig
 from engine.take import SHAPES
 
@@ -40,26 +39,6 @@ def test_a_range_equals_the_whole_take(regressor: Regressor, start: int, stop: i
         assert np.ptp(whole) > 0.01
 
 
-def test_remembered_answers_stand_for_those_of_the_networks(
-    regressor: Regressor, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    curves = np.random.default_rng(1).uniform(0, 50, (160, 8))
-    lips = curves.copy()
-    lips[60:80, CONTROL_INDEX["lips_vertical"]] += 2.0
-    answers = Answers()
-    first = regressor.infer_range(curves, 50, 90, answers=answers, remember=True)
-    np.testing.assert_array_equal(first, regressor.infer_range(curves, 50, 90))
-    expected = regressor.infer_range(lips, 50, 90)
-    asked = []
-    monkeypatch.setattr(
-        regressor,
-        "_ask",
-        lambda area, *rest, **how: asked.append(area) or Regressor._ask(regressor, area, *rest, **how),
-    )
-    np.testing.assert_array_equal(regressor.infer_range(lips, 50, 90, answers=answers), expected)
-    assert asked == ["lower"]  # nothing that the others read has changed
-
-
 def test_the_lids_leave_gaze_alone(regressor: Regressor) -> None:
     controls = np.random.default_rng(2).uniform(0, 50, (40, 8))
     gaze = [index for index, name in enumerate(SHAPES) if name.startswith("eyeLook")]
@@ -73,12 +52,3 @@ def test_extended_controls_change_their_own_shapes_alone(regressor: Regressor) -
     others = np.setdiff1d(np.arange(len(SHAPES)), spoken)
     np.testing.assert_array_equal(given[:, others], without[:, others])
     assert (np.abs(given[:, spoken] - without[:, spoken]).max(axis=0) > 1e-3).all()
-
-
-def test_answers_about_other_rows_of_the_same_curves_are_not_given(regressor: Regressor) -> None:
-    """On a short take every window reads all of it: only the rows tell the questions apart."""
-    curves, answers = np.random.default_rng(3).uniform(0, 50, (90, 8)), Answers()
-    regressor.infer_range(curves, 10, 40, answers=answers, remember=True)
-    for start, stop in ((20, 50), (5, 60)):
-        alone = regressor.infer_range(curves, start, stop)
-        np.testing.assert_array_equal(regressor.infer_range(curves, start, stop, answers=answers), alone)

@@ -68,3 +68,13 @@ def test_whole_frames_are_the_recorded_values_to_the_bit() -> None:
 def test_a_take_of_one_frame_is_aligned() -> None:
     one = Take(DEMO.weights[:1], DEMO.fps)
     assert np.isfinite(align(one, one).offset_s)
+
+
+@pytest.mark.parametrize(("start_s", "by"), [(0.0, "start"), (36_000.0, "timecode")])
+def test_a_take_with_one_face_left_and_its_fill_stay_on_their_clock(start_s: float, by: str) -> None:
+    lost = np.arange(len(DEMO)) != 100
+    still = np.repeat(DEMO.weights[100:101], len(DEMO), axis=0)
+    before = Take(still, DEMO.fps, lost, start_s=start_s)
+    after = replace(DEMO, lost=np.zeros(len(DEMO), bool), start_s=start_s)
+    found = align(before, after)
+    assert (found.offset_s, found.by) == (0.0, by)

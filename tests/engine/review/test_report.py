@@ -40,8 +40,8 @@ def parsed(text: str) -> Tags:
 
 def review(**words: object) -> Review:
     weights = DEMO.weights.copy()
-    weights[60:80, SHAPE_INDEX["jawOpen"]] += 0.4
-    weights[200, SHAPE_INDEX["mouthSmileLeft"]] += 0.7  # a spike
+    weights[60:80, SHAPE_INDEX["jawOpen"]] += 0.4 * np.sin(np.linspace(0, np.pi, 22)[1:-1]) ** 2
+    weights[200, SHAPE_INDEX["mouthSmileLeft"]] += 0.3  # a spike
     after = replace(DEMO.with_weights(weights), name=str(words.pop("name", "after.csv")))
     edits = words.pop("edits", ())
     assert isinstance(edits, tuple)

@@ -216,7 +216,7 @@ HOSTILE = {
     "an absolute path": (_set("buffers", 0, "uri", "/etc/passwd"), "outside its folder"),
     "an address": (_set("buffers", 0, "uri", "http://127.0.0.1:9/a.bin"), "opens no addresses"),
     "a file address": (_set("buffers", 0, "uri", "file:///etc/passwd"), "opens no addresses"),
-    "a sparse index beyond": (_set("accessors", 3, "sparse", "count", 5), "corrects 5"),
+    "a sparse index beyond": (_set("accessors", 3, "sparse", "count", 5), "as many values as 5"),
     "compressed": (_set("extensionsRequired", ["KHR_draco_mesh_compression"]), "compressed"),
     "text for a number": (_set("accessors", 0, "count", "many"), "damaged|wrong kind"),
     "no mesh": (_set("nodes", []), "holds no mesh"),

@@ -120,3 +120,28 @@ def test_a_real_optical_capture_is_understood(name: str, real_take_path: Path) -
     }  # fmt: skip
     assert {marker: landmarks.get(marker) for marker in right} == right
     assert all(not ("left" in place and marker.startswith("R")) for marker, place in landmarks.items())
+
+
+SAID = {
+    "mouth_left": "Face:LMouthCorner",
+    "mouth_right": "lip_corner_R",
+    "lip_upper": "UpperLip",
+    "lip_lower": "Mouth_Down",
+    "chin": "Chin",
+    "nose_tip": "NoseTip",
+    "brow_inner_left": "LBrowIn",
+    "eye_outer_right": "Reye_Outside",
+}
+
+
+@pytest.mark.parametrize("turn", [np.eye(3), Z_UP])
+def test_a_few_markers_are_told_by_words_where_their_places_tell_nothing(turn: np.ndarray) -> None:
+    cap = np.random.default_rng(2).normal(0, 150, (7, 3))  # and a cap's, anywhere
+    found = capture(talking(), SAID, turn=turn)
+    points = np.concatenate([found.positions[0], cap])
+    names = (*found.names, *(f"Cap{number}" for number in range(7)))
+    table = match_markers(points, names)
+    assert table.landmarks == {marker: landmark for landmark, marker in SAID.items()}
+    np.testing.assert_allclose(turn @ table.turn, np.eye(3), atol=0.02)
+    few = match_markers(found.positions[0][:5], found.names[:5])
+    assert few.landmarks == {name: {v: k for k, v in SAID.items()}[name] for name in found.names[:5]}

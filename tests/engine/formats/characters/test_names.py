@@ -12,14 +12,25 @@ SPELLINGS = [
     lambda name: name.replace("Left", "_L").replace("Right", "_R") if name[-5:] in ("tLeft", "Right") else name,
     lambda name: "blendShape1." + name,
     lambda name: "BS_" + name,
+    lambda name: f"Head_Mesh__{name}",
+    lambda name: (
+        f"CC_Base_Body {name.replace('Left', '_L').replace('Right', '_R') if name[-5:] in ('tLeft', 'Right') else name}"
+    ),
 ]
 
 
-@pytest.mark.parametrize("spell", [SPELLINGS[0], SPELLINGS[3], SPELLINGS[4]], ids=["plain", "maya", "prefix"])
+@pytest.mark.parametrize("spell", [SPELLINGS[0], *SPELLINGS[3:]], ids=["plain", "maya", "prefix", "mesh", "body"])
 def test_each_shape_is_found_under_other_spellings(spell) -> None:
     rows = match_names([spell(name) for name in SHAPES])
     assert [row.shape for row in rows] == list(SHAPES)
     assert all(row.sure for row in rows)
+
+
+def test_halves_are_known_behind_a_mesh_s_own_name_and_what_shapes_share_stays_theirs() -> None:
+    rows = match_names([f"Head_Mesh_{name}" for name in ("browInnerUp_L", "browInnerUp_R", "jawOpen", "eyeBlink_L")])
+    assert [row.shape for row in rows] == ["browInnerUp", "browInnerUp", "jawOpen", "eyeBlinkLeft"]
+    names = ["mouthLeft", "mouthRight", "mouthClose", "mouthFunnel"]
+    assert [row.shape for row in match_names(names)] == names
 
 
 def test_sides_are_never_exchanged() -> None:

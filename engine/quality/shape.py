@@ -1,0 +1,100 @@
+"""Faces that are none: excluding shapes, weights out of range, exchanged sides, lips and lids through each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+
+import numpy as np
+
+from engine.anatomy import EXCLUSIVE, clash
+from engine.character import bundled
+from engine.formats.livelink_sides import EXCHANGED, PULLING, judge
+from engine.quality.record import Flag, weight_of
+from engine.quality.seen import Seen, strengths
+from engine.quality.tuning import TUNING
+from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, runs
+
+_T = TUNING
+_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
+_SIDES = ("Left", "Right")
+_TELLING = 20_000  # frames that tell the sides; of a longer take every second one, every third, ...
+_MEETING = (
+    ("lip", "lip_inner_upper", "lip_inner_lower"),
+    ("lid", "lid_upper_right", "lid_lower_right"),
+    ("lid", "lid_upper_left", "lid_lower_left"),
+)
+
+
+def impossible(seen: Seen, low: int, high: int) -> Iterator[Flag]:
+    """Yield frames with two shapes that exclude each other."""
+    strength = strengths(seen, low, high, reach=0, verdict=lambda weights, _: clash(weights)[0])
+    for start, stop in runs(strength > _T.both):
+        worst = start + int(np.argmax(strength[start:stop]))
+        _, which = clash(seen.weights[low + worst : low + worst + 1])
+        first, second, reason = EXCLUSIVE[which[0]]
+        text = f"{first} and {second} are both at {strength[worst]:.2f} or more: {reason}."
+        yield Flag("impossible", low + start, low + stop, weight_of(strength[worst], _T.both, 1.0), text)
+
+
+def out_of_range(seen: Seen, low: int, high: int) -> Iterator[Flag]:
+    """Yield frames with a weight that is negative or above 1 by more than rounding."""
+
+    def verdict(weights: Array, kept: Mask) -> Array:
+        beyond = np.maximum(_T.least_weight - weights.min(axis=1), weights.max(axis=1) - _T.most_weight)
+        return np.asarray(np.where(kept, beyond, 0.0))
+
+    beyond = strengths(seen, low, high, reach=0, verdict=verdict)
+    for start, stop in runs(beyond > 0):
+        row = seen.weights[low + start + int(np.argmax(beyond[start:stop]))]
+        worst = int(np.argmax(np.maximum(-row, row - 1.0)))
+        text = f"{SHAPES[worst]} is at {row[worst]:.2f}; weights go from 0 to 1."
+        weight = weight_of(float(beyond[start:stop].max()), 0.0, _T.full_beyond)
+        yield Flag("range", low + start, low + stop, weight, text)
+
+
+def swapped(seen: Seen, low: int, high: int) -> Iterator[Flag]:
+    """Yield the whole take where the mouth goes to one side and the other side's muscles pull."""
+    if seen.length < _T.swapped_frames:
+        return
+    names = [name for pair in EXCHANGED for name in pair] + [f"{shape}{side}" for shape in PULLING for side in _SIDES]
+    part = slice(None, None, 1 + seen.length // _TELLING)
+    agreement = judge({name: seen.weights[part, SHAPE_INDEX[name]] for name in names}, seen.kept[part]).agreement
+    if agreement is not None and -agreement > _T.swapped:
+        text = f"Left and right of the mouth look exchanged (correlation {agreement:+.2f})."
+        weight = weight_of(-agreement, _T.swapped, _T.full_swapped)
+        yield Flag("swapped", 0, seen.length, weight, text)
+
+
+def crossing(seen: Seen, low: int, high: int) -> Iterator[Flag]:
+    """Yield frames on which the lips or the lids of the bundled head pass through each other."""
+    for name, through_mm in (("lip", _T.through_lips_mm), ("lid", _T.through_lids_mm)):
+
+        def verdict(weights: Array, kept: Mask, name: str = name) -> Array:
+            return np.asarray(np.where(kept, crossed_mm(weights, name), 0.0))
+
+        depth = strengths(seen, low, high, reach=0, verdict=verdict)
+        for start, stop in runs(depth > through_mm):
+            most = float(depth[start:stop].max())
+            text = f"The {name}s pass through each other by {most:.1f} mm on the head."
+            yield Flag("through", low + start, low + stop, weight_of(most, through_mm, _T.full_through_mm), text)
+
+
+def crossed_mm(weights: Array, name: str) -> Array:
+    """Return by how much the lower lip or lid is above the upper one, (frames,) mm, negative where it is below."""
+    rest, basis = _gaps(name)
+    drawn = weights.copy()  # lips close no further than the jaw has opened, as the character is drawn
+    drawn[:, _CLOSE] = np.minimum(weights[:, _CLOSE], np.maximum(weights[:, _JAW], 0.0))
+    # einsum sums a row alike wherever it stands; a matrix product does not, and flags must not depend on that
+    return np.asarray(
+        -np.min([np.einsum("fs,s->f", drawn, one) + gap for gap, one in zip(rest, basis, strict=True)], 0)
+    )
+
+
+@lru_cache(maxsize=2)
+def _gaps(name: str) -> tuple[Array, Array]:
+    """Return the height of the upper over the lower landmark at rest, (pairs,) mm, and by weight, (pairs, 52)."""
+    pairs = [pair for kind, *pair in _MEETING if kind == name]
+    upper, up = bundled().landmark_positions([pair[0] for pair in pairs])
+    lower, down = bundled().landmark_positions([pair[1] for pair in pairs])
+    return upper[:, 1] - lower[:, 1], np.ascontiguousarray((up - down)[:, :, 1].T)
