@@ -17,7 +17,7 @@ from app.session import Session
 from app.session.keeper import Keeper
 from app.session.opening import Opened, Opening, Wish
 from app.settings import Settings
-from app.widgets.saving import ask_where, may_replace
+from app.widgets.saving import ask_where, beside, may_replace
 from app.widgets.text import message_box
 from engine.errors import EngineError
 from engine.formats import FORMATS, cues, livelink_folder, write_take
@@ -187,14 +187,14 @@ class FileActions(QObject):
 
     def save_as(self) -> bool:
         """Choose a file and save the project: the original, every edit, and what can be undone."""
-        suggested = self._beside(f"{Path(self._session.name).stem}{ENDING}")
+        suggested = beside(self._session.path, f"{Path(self._session.name).stem}{ENDING}")
         kinds = {f"Retake project (*{ENDING})": ENDING}
         path, _ = ask_where(self._window, "Save the project", suggested, kinds)
         return path is not None and self._save_to(path)
 
     def export(self) -> bool:
         """Choose a file and write the edited take as other programs read it."""
-        suggested = self._beside(f"{Path(self._session.name).stem}_edited.csv")
+        suggested = beside(self._session.path, f"{Path(self._session.name).stem}_edited.csv")
         path, kind = ask_where(self._window, "Export the take", suggested, ENDINGS)
         if path is None or (self._is_original(path) and not may_replace(self._window, ORIGINAL.format(path.name))):
             return False
@@ -292,14 +292,6 @@ class FileActions(QObject):
         opened = self._session.path
         same = opened is not None and opened.exists() and path.exists() and path.samefile(opened)
         return path.exists() and (same or path.name == self._session.original.name)
-
-    def _beside(self, name: str) -> Path:
-        """Return a name in the folder of what is open; the program's own demo take is no place to save to."""
-        from engine.performance import demo
-
-        path = self._session.path
-        folder = path.parent if path is not None and path != demo.BUNDLED else Path.home()
-        return folder / name
 
 
 def _sweep_all(folders: Iterable[Path]) -> None:

@@ -44,6 +44,8 @@ class Menus(QObject):
             action.setIconText(entry.short or entry.title)  # what a toolbar button shows
             action.triggered.connect(lambda _=False, name=entry.name: do(name))
             self.actions[entry.name] = action
+        self._one_of([entry.name for entry in ACTIONS if entry.name.endswith("_tool")])
+        self._one_of([entry.name for entry in ACTIONS if entry.name.startswith("view_")])
         self._menus: dict[str, QMenu] = {}
         for title in MENUS:
             menu = self._menus[title] = window.menuBar().addMenu(title)
@@ -57,6 +59,12 @@ class Menus(QObject):
         self._recent.aboutToShow.connect(self._fill_recent)
         self.hints = Hints()
         self._offer_presets()
+
+    def _one_of(self, names: Sequence[str]) -> None:
+        """Keep one of some actions checked: the key of the tool in hand, pressed again, does not put it down."""
+        group = QActionGroup(self)
+        for name in names:
+            group.addAction(self.actions[name])
 
     def _offer_presets(self) -> None:
         menu = self._menus["View"].addMenu("Shortcuts")

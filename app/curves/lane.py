@@ -48,6 +48,10 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         indent = INDENT_PX if self._curve.is_weight else 0
         name_box.adjust(indent, 0, 0, 0)
         wide = painter.fontMetrics().horizontalAdvance(mark + self._curve.title)
+        if self.active and wide > name_box.width():
+            font.setBold(False)  # the frame and the larger lane tell which it is
+            painter.setFont(font)
+            wide = painter.fontMetrics().horizontalAdvance(mark + self._curve.title)
         if wide > name_box.width():
             font.setStretch(int(100 * name_box.width() / wide))  # a name that is cut may be another's
             painter.setFont(font)

@@ -75,14 +75,17 @@ class FactsSection(Section):
         """Return what to say of the edit on screen, and whether believability alone keeps it from what was asked."""
         session, draft = self.session, self.session.draft
         if draft is not None:
-            told = draft.start, draft.weights, draft.asked, draft.granted
+            was = session.controls[draft.start : draft.start + len(draft.asked)]
+            told = draft.start, draft.weights, draft.asked, draft.granted, was
             return _told(*told, believability=session.believability, playhead=session.playhead)
         if step is None or step.asked is None:
             return [], False
         start, asked = step.asked
         now = session.take.weights[start : start + len(asked)]
         believability = step.edit.inputs["believability"]
-        return _told(start, now, asked, step.granted, believability=believability, playhead=session.playhead)
+        return _told(
+            start, now, asked, step.granted, step.before[0], believability=believability, playhead=session.playhead
+        )
 
     def _counts(self) -> str:
         session, draft, frames = self.session, self.session.draft, len(self.session.take)
@@ -97,16 +100,16 @@ class FactsSection(Section):
 
 
 def _told(
-    start: int, weights: Array, asked: Array, granted: Array | None, *, believability: float, playhead: int
+    start: int, weights: Array, asked: Array, granted: Array | None, was: Array, *, believability: float, playhead: int
 ) -> tuple[list[str], bool]:
     """Return a line for each control that an edit asked for, and whether believability alone holds one of them back.
 
-    Weights, (n, 52), and asked values, (n, 16) with NaN, are from frame `start`. A line tells of the row at the
-    playhead, whose face and values are on the screen; where nothing was asked there, of the row that misses most, and
-    names its frame.
+    Weights, (n, 52), asked values, (n, 16) with NaN, and what the controls were, (n, 16), are from frame `start`. A
+    line tells of the row at the playhead, whose face and values are on the screen; where nothing was asked there, of
+    the row that misses most, or, where all is met, that was pulled furthest, and names its frame.
     """
     # here and not above: torch takes a second to load, and the window should be seen first
-    from engine.shortfall import shortfalls
+    from engine.shortfall import SHORT, shortfalls
 
     wanted = ~np.isnan(asked)
     if not wanted.any():
@@ -117,7 +120,8 @@ def _told(
     for lane in np.flatnonzero(wanted.any(axis=0)).tolist():
         here = 0 <= playhead - start < len(asked) and wanted[playhead - start, lane]
         rows = np.flatnonzero(wanted[:, lane])
-        row = playhead - start if here else int(rows[np.argmax(missing[rows, lane])])
+        misses, pulled = missing[rows, lane], np.abs(asked[rows, lane] - was[rows, lane])
+        row = playhead - start if here else int(rows[np.argmax(misses if misses.max() > SHORT else pulled)])
         one = slice(row, row + 1)
         found = shortfalls(
             weights[one], asked[one], believability=believability, granted=None if granted is None else granted[one]

@@ -16,7 +16,7 @@ from app.retarget.retargeting import Retargeting
 from app.retarget.section import RetargetSection
 from app.retarget.sides import sides
 from app.session import Session
-from app.widgets.saving import ask_where
+from app.widgets.saving import ask_where, beside
 from app.widgets.section import Section
 from engine.errors import EngineError
 
@@ -191,7 +191,9 @@ class RetargetActions(QObject):
             self._try(lambda: use(Path(name)))
 
     def _to_file(self, title: str, stem: str, kinds: Mapping[str, str], use: Callable[[Path], None]) -> None:
-        path, _ = ask_where(self._window, title, Path.home() / f"{stem}{next(iter(kinds.values()))}", kinds)
+        path, _ = ask_where(
+            self._window, title, beside(self._session.path, f"{stem}{next(iter(kinds.values()))}"), kinds
+        )
         if path is not None:
             self._try(lambda: use(path))
 

@@ -13,7 +13,7 @@ from app.review.reporting import Reporting
 from app.review.section import ReviewSection
 from app.session import Change, Session
 from app.session.commands import EditCommand
-from app.widgets.saving import ask_where
+from app.widgets.saving import ask_where, beside
 from engine.project import ENDING
 from engine.review.changes import Change as Difference
 from engine.take import Take
@@ -84,7 +84,7 @@ class ReviewActions(QObject):
 
     def write_report(self) -> None:
         """Choose a file and write what was changed as a page to read anywhere."""
-        suggested = Path(f"{Path(self._session.name).stem}_review.html")
+        suggested = beside(self._session.path, f"{Path(self._session.name).stem}_review.html")
         path, _ = ask_where(self._window, "Write a report", suggested, {"Report (*.html)": ".html"})
         if path is not None:
             self.told.emit("Writing the report…")

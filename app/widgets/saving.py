@@ -10,6 +10,13 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 Answer = QMessageBox.StandardButton
 
 
+def beside(opened: Path | None, name: str) -> Path:
+    """Return a name in the folder of what is open; the program's own demo take is no place to save to."""
+    from engine.performance import demo
+
+    return (opened.parent if opened is not None and opened != demo.BUNDLED else Path.home()) / name
+
+
 def ask_where(parent: QWidget, title: str, suggested: Path, kinds: Mapping[str, str]) -> tuple[Path | None, str]:
     """Return the file that the user chose to write, or None, and the kind that was chosen.
 

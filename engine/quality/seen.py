@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from engine.controls import CONTROL_INDEX
 from engine.errors import EditError
@@ -155,6 +154,8 @@ def drops(gap_mm: Array, within: int) -> Array:
     gap_mm : (frames,) between the lids
     within : frames in which it falls, and in which it rises
     """
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d  # here: the window is seen before scipy is loaded
+
     size = within + 1
     fell = maximum_filter1d(gap_mm, size, origin=within - size // 2, mode="nearest") - gap_mm
     rises = maximum_filter1d(gap_mm, size, origin=-(size // 2), mode="nearest") - gap_mm

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QMessageBox
 from pytestqt.qtbot import QtBot
 
@@ -31,6 +32,23 @@ def test_every_action_runs_on_a_fresh_take(qtbot: QtBot, window: MainWindow, can
             qtbot.wait(5)
     window.transport.run(0.0)
     settled(qtbot, window)
+
+
+@pytest.mark.parametrize("ending", ["_tool", "view_"])
+def test_what_is_chosen_stays_checked_when_it_is_chosen_again(window: MainWindow, ending: str) -> None:
+    names = [entry.name for entry in ACTIONS if entry.name.endswith(ending) or entry.name.startswith(ending)]
+    assert len(names) >= 4
+    for name in names:
+        for _ in range(2):
+            window.actions_by_name[name].trigger()
+            assert [each for each in names if window.actions_by_name[each].isChecked()] == [name]
+
+
+def test_the_key_of_the_tool_in_hand_leaves_its_button_lit(window: MainWindow) -> None:
+    window.curves.setFocus()
+    for _ in range(2):
+        QTest.keyClick(window.curves, Qt.Key.Key_V)
+        assert window.session.tool == "drag" and window.actions_by_name["drag_tool"].isChecked()
 
 
 def test_ctrl_q_ends_the_program(qtbot: QtBot, window: MainWindow) -> None:

@@ -101,6 +101,20 @@ def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
     np.testing.assert_array_equal(session.take.weights, before[0])
 
 
+def test_a_curve_that_is_dragged_up_and_back_is_as_it_was_and_the_edit_is_told_of_where_it_goes_furthest(
+    qtbot: QtBot, window: MainWindow
+) -> None:
+    session = window.session
+    before = session.curve(LIPS).copy()
+    frame = int(np.argmin(before[60:-60])) + 60
+    drag(qtbot, window, LIPS, frame, 15.0)
+    assert session.curve(LIPS)[frame] > before[frame] + 10.0
+    session.move_playhead(0)
+    assert window.facts.told.text().endswith(f"(frame {frame:,})")
+    drag(qtbot, window, LIPS, frame, before[frame] - session.curve(LIPS)[frame])
+    np.testing.assert_allclose(session.curve(LIPS), before, atol=1.0)
+
+
 def test_play_and_step_by_keys(qtbot: QtBot, window: MainWindow) -> None:
     QTest.keyClick(window, Qt.Key.Key_Right)
     QTest.keyClick(window, Qt.Key.Key_Right)

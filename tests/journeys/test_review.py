@@ -96,11 +96,17 @@ def test_a_report_is_written_beside_the_work(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compared(qtbot, window, edited(tmp_path / "b.csv", (60, 80)), monkeypatch)
-    out = tmp_path / "report.html"
-    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(out), ""))
+    out, suggested = tmp_path / "report.html", []
+
+    def chosen(*arguments: object) -> tuple[str, str]:
+        suggested.append(Path(str(arguments[2])))
+        return str(out), ""
+
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", chosen)
     with qtbot.waitSignal(window.review.reporting.written, timeout=120_000):
         window.actions_by_name["write_report"].trigger()
     text = out.read_text(encoding="utf-8")
+    assert suggested[0].parent in (Path.home(), window.session.path.parent)  # and not where the program was started
     assert "frames 60 to 79" in text and "as in b.csv" in text and "data:image/png" in text
 
 
