@@ -304,8 +304,7 @@ def _said_rate(style: Style, rate: float, measured: float, quantum_s: float) -> 
 def _said_odd(odd: int, walked: _Walked) -> list[str]:
     said = []
     if odd:
-        what, stand = ("1 timecode is", "its row stands") if odd == 1 else (f"{odd} timecodes are", "their rows stand")
-        said.append(f"{what} out of order; {stand} where the rows beside say.")
+        said.append(f"{counted(odd, 'timecode')} out of order, placed by the rows beside.")
     if walked.uneven:
         return ["The clock runs unevenly; the rows are taken at even steps."]
     if walked.set_back:
