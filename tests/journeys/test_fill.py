@@ -121,7 +121,7 @@ def test_overlapping_marks_are_refused(window: MainWindow) -> None:
         session.select(frames)
         window.spans.mark()
     assert [(span.start, span.stop) for span in session.marks.spans if span.kind == "user"] == [(100, 130)]
-    assert "100:130" in window.notices.text.text()
+    assert "Frames 100 to 129" in window.notices.text.text()
 
 
 def test_pins_inside_are_met_pins_outside_are_left_alone_and_others_keep_the_steering(
