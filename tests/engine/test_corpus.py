@@ -26,3 +26,9 @@ def test_a_rest_too_short_to_tell_of_motion_is_left_out() -> None:
     piece = _piece(0, 3 * SHORTEST)
     assert rest_of([piece], piece, SHORTEST - 1, 2 * SHORTEST + 1) == []
     assert len(rest_of([piece], piece, SHORTEST, 2 * SHORTEST)) == 2
+
+
+def test_a_take_kept_for_trial_alone_is_in_no_part(tmp_path: Path) -> None:
+    shutil.copy(demo.BUNDLED, tmp_path / "slate_3.csv")
+    shutil.copy(demo.BUNDLED, tmp_path / "other.csv")
+    assert {piece.source for part in split(tmp_path) for piece in part} == {"other.csv"}
