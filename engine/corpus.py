@@ -15,7 +15,9 @@ from engine.models.resample import to_model_rate
 from engine.take import MODEL_FPS, Array, Mask, Take, runs
 
 TEST = ("alex_rom_4", "facial", "1114_3_16")
-NEVER_TRAINED = ("slate_3",)  # a person and a rate that nothing is trained or tuned on, and no part of the fixed test split
+NEVER_TRAINED = (
+    "slate_3",
+)  # a person and a rate that nothing is trained or tuned on, and no part of the fixed test split
 VALIDATION_SHARE = 0.15  # the last part of each training take
 SHORTEST = 16  # frames; what lies between two lost runs closer than this tells nothing of motion
 

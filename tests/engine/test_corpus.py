@@ -1,8 +1,12 @@
 from __future__ import annotations
 
+import shutil
+from pathlib import Path
+
 import numpy as np
 
-from engine.corpus import SHORTEST, Piece, recorded_seconds, rest_of
+from engine.corpus import SHORTEST, Piece, recorded_seconds, rest_of, split
+from engine.performance import demo
 from engine.take import SHAPES
 
 
@@ -31,4 +35,4 @@ def test_a_rest_too_short_to_tell_of_motion_is_left_out() -> None:
 def test_a_take_kept_for_trial_alone_is_in_no_part(tmp_path: Path) -> None:
     shutil.copy(demo.BUNDLED, tmp_path / "slate_3.csv")
     shutil.copy(demo.BUNDLED, tmp_path / "other.csv")
-    assert {piece.source for part in split(tmp_path) for piece in part} == {"other.csv"}
+    assert {piece.source for part in split(tmp_path) for piece in part} == {"other"}
