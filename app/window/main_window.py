@@ -140,7 +140,7 @@ class MainWindow(QMainWindow):
             self.attached,
         )
         self.inspector = Inspector(self.session, sections)
-        self._closed = False
+        self.closed = False  # once its threads have ended
         self._plain_text = PlainText(self)
         self.setAcceptDrops(True)
         self.menus = Menus(self, self.settings, self._do, self.files.load)
@@ -357,13 +357,13 @@ class MainWindow(QMainWindow):
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask for unsaved edits, wait until all is written, then end the threads."""
-        if not self._closed:
+        if not self.closed:
             self.files.when_safe(self._leave)
-        event.setAccepted(self._closed)
+        event.setAccepted(self.closed)
 
     def _leave(self) -> None:
         self.shut_down()
-        self._closed = True
+        self.closed = True
         self.close()
 
     def shut_down(self) -> None:

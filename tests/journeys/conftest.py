@@ -27,9 +27,15 @@ def window(qtbot: QtBot, tmp_path: Path) -> Iterator[MainWindow]:
     opened.resize(DESIGNED)  # the offscreen screen is smaller
     settled(qtbot, opened)
     yield opened
-    opened.session.undo.setClean()
-    opened.close()
-    opened.deleteLater()
+    end(qtbot, opened)
+
+
+def end(qtbot: QtBot, window: MainWindow) -> None:
+    """Close a window without a question, and delete it when its threads have ended: a busy keeper delays that."""
+    window.session.undo.setClean()
+    window.close()
+    qtbot.waitUntil(lambda: window.closed, timeout=30_000)
+    window.deleteLater()
 
 
 @pytest.fixture(autouse=True)

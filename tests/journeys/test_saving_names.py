@@ -19,7 +19,7 @@ from engine import project
 from engine.formats import read_take
 from engine.performance import demo
 from engine.project import Contents, Project
-from tests.journeys.conftest import load, noted, saved_as, settled
+from tests.journeys.conftest import end, load, noted, saved_as, settled
 
 Answer = QMessageBox.StandardButton
 CONTROL_S = (Qt.Key.Key_S, Qt.KeyboardModifier.ControlModifier)
@@ -196,7 +196,7 @@ def test_a_project_that_another_retake_has_open_is_offered_as_a_copy(
     choosing(monkeypatch, take.with_name("mine.retake"))
     with qtbot.waitSignal(second.keeper.saved, timeout=20_000):
         second.files.save()
-    second.close()
+    end(qtbot, second)
     texts = _texts(path), _texts(take.with_name("mine.retake"))
     assert texts == (["one", "three"], ["one", "two"])
 

@@ -50,7 +50,8 @@ def test_edits_that_were_given_up_are_kept_where_the_file_cannot_be_read(
     monkeypatch.setattr(QMessageBox, "question", lambda *words: asked.append(words[2]) or Answer.Discard)
     window.load(broken)
     qtbot.waitUntil(window.notices.isVisible, timeout=20_000)
-    assert window.session.edited and list((tmp_path / "unsaved").glob("*")) != []
+    assert window.session.edited
+    qtbot.waitUntil(lambda: list((tmp_path / "unsaved").glob("*")) != [], timeout=20_000)
     window.load(other)  # they were given up for another file
     assert len(asked) == 2
     window.session.undo.undo()
