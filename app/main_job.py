@@ -9,11 +9,11 @@ import numpy as np
 
 from app.preview import movie
 from app.printing import remark, say
+from engine.assets import DEMO_TAKE
 from engine.controls import CONTROL_INDEX, measure
 from engine.editing import Patch, edit_control
 from engine.errors import EngineError
 from engine.formats import read_take, write_take
-from engine.performance import demo
 from engine.take import Take
 from engine.words import counted
 
@@ -49,7 +49,7 @@ def write_results(take: Take, edited: Take, frames: tuple[int, int], stem: str) 
 def main() -> int:
     """Run the job on the take named on the command line, or on the bundled one."""
     try:
-        path = Path(sys.argv[1]) if len(sys.argv) > 1 else demo.BUNDLED
+        path = Path(sys.argv[1]) if len(sys.argv) > 1 else DEMO_TAKE
         take = read_take(path)
         frames = widest_span(take)
         patch = close_lips(take, frames)

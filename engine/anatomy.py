@@ -1,4 +1,4 @@
-"""What no face can do: pairs of shapes that exclude each other."""
+"""Which shapes mirror each other, and pairs of shapes that exclude each other: what no face can do."""
 
 from __future__ import annotations
 
@@ -8,9 +8,19 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from engine.take import SHAPE_INDEX, Array, Mask
+from engine.take import SHAPE_INDEX, SHAPES, Array, Mask
 
 Indices = npt.NDArray[np.int64]
+
+
+def _other_side(name: str) -> str:
+    if "Left" in name:
+        return name.replace("Left", "Right")
+    return name.replace("Right", "Left")
+
+
+MIRROR: Indices = np.array([SHAPE_INDEX[_other_side(name)] for name in SHAPES])
+
 
 BOTH = 0.4  # two shapes that exclude each other are both this strong
 
@@ -72,3 +82,8 @@ def clash(weights: Array) -> tuple[Array, Indices]:
 def impossible(weights: Array) -> Mask:
     """Return which frames, (frames,) bool, of weights, (frames, 52), hold a pair of `EXCLUSIVE` shapes."""
     return np.asarray(clash(weights)[0] > BOTH)
+
+
+def mirrored(weights: Array) -> Array:
+    """Return weights, (frames, 52), of the face seen in a mirror; looking sideways needs no sign, its names are sided."""
+    return np.asarray(weights[:, MIRROR])

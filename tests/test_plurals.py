@@ -15,7 +15,7 @@ NOUNS = (
 # "{count} frames" and "{count} lost frames"; ranges such as frames 3:9 begin otherwise
 FOLLOWED = re.compile(rf"^ (?:[a-z]+ ){{0,2}}(?:{NOUNS})\b")
 # What is shown to those who train networks and measure them, never to who edits a take.
-MEASURES = ("engine/evaluate", "engine/speed", "engine/performance", "engine/modelling", "app/bench")
+MEASURES = ("engine/lab", "app/bench")
 NAMES = ("name", "control", "undo", "fill", "frame", "text")
 SURELY_MANY = (
     "at most",

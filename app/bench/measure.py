@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from app.bench.playback import opening_job, playback_job, saving_job
-from engine import speed
-from engine.speed import Speed, percentile_ms, performance_of
+from engine.lab import speed
+from engine.lab.speed import Speed, percentile_ms, performance_of
 from engine.take import Take
 
 Report = Callable[[str], None]
@@ -189,7 +189,7 @@ def startup_job() -> list[Speed]:
 
     from app.window.main_window import MainWindow
     from engine.formats import read_take
-    from engine.performance import demo
+    from engine.lab.performer import demo
 
     application = QApplication(["retake"])
     window = MainWindow(read_take(demo.BUNDLED), demo.BUNDLED)

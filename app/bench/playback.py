@@ -14,7 +14,7 @@ import numpy as np
 from app.playback.clock import Pull
 from app.playback.device import LATENCY_S
 from app.preview.worker import Wanted
-from engine.speed import Speed, performance_of
+from engine.lab.speed import Speed, performance_of
 
 PLAYED_S = 30.0
 RATE, BLOCK = 48_000, 512
@@ -79,7 +79,7 @@ def playback_job(seconds: float = PLAYED_S) -> list[Speed]:
 
     from engine.formats import read_take
     from engine.formats.audio import Audio
-    from engine.performance import demo
+    from engine.lab.performer import demo
 
     application = QApplication.instance() or QApplication(["retake"])
     with tempfile.TemporaryDirectory() as folder:
@@ -141,7 +141,7 @@ def opening_job() -> list[Speed]:
     from PySide6.QtWidgets import QApplication
 
     from engine.formats import read_take, write_take
-    from engine.performance import demo
+    from engine.lab.performer import demo
 
     application = QApplication.instance() or QApplication(["retake"])
     with tempfile.TemporaryDirectory() as folder:

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 import typer
 
 from app import printing
-from engine import evaluate as tables
 from engine.errors import EngineError
+from engine.lab import evaluate as tables
 
 
 def show(title: str, rows: Sequence[dict[str, Any]], *, as_json: bool) -> None:

@@ -22,12 +22,12 @@ NETWORKS = (
     "prior",
 )
 ELSEWHERE = {  # the others are engine.NAME.train
-    "regress_baselines": "engine.evaluate.baselines.train",
-    "regress_study": "engine.evaluate.study",
-    "prior": "engine.regress.prior_train",
-    "expected": "engine.inpaint.expected_train",
-    "motion": "engine.evaluate.latent",
-    "controls": "engine.evaluate.regressors",
+    "regress_baselines": "engine.lab.evaluate.baselines.train",
+    "regress_study": "engine.lab.evaluate.study",
+    "prior": "engine.lab.train.regress.prior_train",
+    "expected": "engine.lab.train.inpaint.expected_train",
+    "motion": "engine.lab.evaluate.latent",
+    "controls": "engine.lab.evaluate.regressors",
 }
 ASSETS = ("demo", "head")
 
@@ -40,7 +40,7 @@ def train(
     """Train a network; stop it at any time and run it again to go on."""
     import importlib
 
-    from engine.corpus import data_folder
+    from engine.lab.corpus import data_folder
     from engine.models.checkpoint import MODELS
 
     if name not in NETWORKS:
@@ -52,11 +52,11 @@ def train(
 def build(name: Annotated[str, typer.Argument(help=f"Which asset: {', '.join(ASSETS)}.")]) -> None:
     """Rebuild a bundled asset: the head, or the demo take."""
     if name == "demo":
-        from engine.performance import demo
+        from engine.lab.performer import demo
 
         demo.build()
     elif name == "head":
-        from engine.modelling import head
+        from engine.lab.modelling import head
 
         head.build()
     else:

@@ -12,9 +12,9 @@ Answer = QMessageBox.StandardButton
 
 def beside(opened: Path | None, name: str) -> Path:
     """Return a name in the folder of what is open; the program's own demo take is no place to save to."""
-    from engine.performance import demo
+    from engine.assets import DEMO_TAKE
 
-    return (opened.parent if opened is not None and opened != demo.BUNDLED else Path.home()) / name
+    return (opened.parent if opened is not None and opened != DEMO_TAKE else Path.home()) / name
 
 
 def ask_where(parent: QWidget, title: str, suggested: Path, kinds: Mapping[str, str]) -> tuple[Path | None, str]:

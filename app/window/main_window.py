@@ -66,8 +66,8 @@ from app.window.missing import MissingMedia
 from app.window.notices import Notices
 from app.window.screen import DESIGNED, stay_on_screen
 from app.window.status import StatusBar
+from engine.assets import DEMO_TAKE
 from engine.formats.importing import imported
-from engine.performance import demo
 from engine.take import Take
 
 
@@ -321,7 +321,7 @@ class MainWindow(QMainWindow):
         self.notices.hide()
         self._show_title()
         self.status.show_take()
-        from_file = self.keeper.path is None and self.session.path not in (None, demo.BUNDLED)
+        from_file = self.keeper.path is None and self.session.path not in (None, DEMO_TAKE)
         self.importing.tell(self.files.imported, shown=from_file)
         there = from_file and self.importing.there  # it has what was noticed
         self.status.tell("" if there else " ".join(self.session.take.notices))

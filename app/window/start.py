@@ -9,9 +9,9 @@ from pathlib import Path
 from types import TracebackType
 
 from app.printing import remark
+from engine.assets import DEMO_TAKE
 from engine.errors import EngineError
 from engine.formats import read_take
-from engine.performance import demo
 
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
 
@@ -31,7 +31,7 @@ def start(path: Path | None) -> int:
     application = QApplication(sys.argv[:1])
     application.setApplicationName("Retake")
     application.setStyle("Fusion")  # the style sheet is drawn over it, alike on every desktop
-    window = MainWindow(read_take(demo.BUNDLED), demo.BUNDLED)
+    window = MainWindow(read_take(DEMO_TAKE), DEMO_TAKE)
     _report_to(window)
     if path is not None:
         window.files.opening.failed.connect(lambda *_: _tell_what_is_open(window))
@@ -42,7 +42,7 @@ def start(path: Path | None) -> int:
 
 
 def _tell_what_is_open(window) -> None:  # type: ignore[no-untyped-def]
-    if window.session.path == demo.BUNDLED:
+    if window.session.path == DEMO_TAKE:
         window.notices.add("The demo take is open instead.")
 
 

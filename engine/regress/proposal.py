@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import torch
 
+from engine.anatomy import MIRROR
 from engine.controls import ALL_CONTROLS
-from engine.performance.augment import MIRROR
 from engine.regress.areas import AREAS, EXTENDED_AREAS, Area
 from engine.regress.infer import Regressor
 from engine.regress.network import ALIGNMENT

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine.anatomy import EXCLUSIVE, clash, impossible, pairs
-from engine.performance.corpus import synthetic_performances
+from engine.lab.performer.corpus import synthetic_performances
 from engine.take import SHAPE_INDEX, SHAPES
 
 

@@ -11,7 +11,7 @@ from engine.editing import Dragger, ask, edit_control, parse_frames
 from engine.errors import EditError
 from engine.extended import bundled_face
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.regress.plausibility import DEFAULT_BELIEVABILITY
 from engine.regress.prior import bundled_prior
 from engine.take import SHAPE_INDEX, SHAPES, Take

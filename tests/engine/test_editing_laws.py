@@ -12,8 +12,8 @@ from engine.controls import ALL_CONTROLS, ALL_INDEX
 from engine.editing import Dragger, Patch, ask, edit_control
 from engine.extended import bundled_face
 from engine.formats import read_take
-from engine.performance import demo
-from engine.performance.augment import MIRROR
+from engine.lab.performer import demo
+from engine.lab.performer.augment import MIRROR
 from engine.regress.prior import MIRROR_CONTROL, MIRROR_SIGN
 from engine.take import SHAPES, Array, Take
 

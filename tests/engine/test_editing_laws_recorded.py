@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from engine.controls import ALL_INDEX
-from engine.corpus import data_folder
 from engine.editing import Dragger, edit_control
 from engine.extended import bundled_face
 from engine.formats import read_take
-from engine.performance.augment import MIRROR
+from engine.lab.corpus import data_folder
+from engine.lab.performer.augment import MIRROR
 from engine.take import Array, Take
 
 LENGTH_S, AROUND_S = 0.8, 1.5  # of the edit, and of what is kept of the take around it

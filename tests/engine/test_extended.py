@@ -5,7 +5,7 @@ import pytest
 
 from engine.controls import ALL_CONTROLS, bundled_measurer
 from engine.extended import EXTENDED_INDEX, bundled_face
-from engine.performance.augment import MIRROR
+from engine.lab.performer.augment import MIRROR
 from engine.regress.prior import MIRROR_CONTROL, MIRROR_SIGN
 from engine.take import SHAPE_INDEX, SHAPES, Array
 

@@ -5,8 +5,8 @@ import pytest
 
 from engine.controls import measure
 from engine.errors import EngineError
-from engine.performance import demo
-from engine.performance.performer import Script, perform
+from engine.lab.performer import demo
+from engine.lab.performer.performer import Script, perform
 
 
 def test_the_same_script_gives_the_same_take() -> None:

@@ -12,7 +12,7 @@ from engine.controls import CONTROL_INDEX, measure
 from engine.formats import read_take
 from engine.formats.audio import Audio
 from engine.formats.livelink_sides import exchange
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.quality import (
     CLOSED_MM,
     KINDS,

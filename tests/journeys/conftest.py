@@ -13,7 +13,7 @@ from app.settings import Settings
 from app.window.main_window import MainWindow
 from app.window.screen import DESIGNED
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 
 
 @pytest.fixture

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import QApplication
 from app.settings import Settings
 from app.window.main_window import MainWindow
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from tests.journeys.walking import Walk, lay_out_files, undisturbed
 from tests.performance.soak import resident_mb
 

@@ -17,7 +17,7 @@ from app.spans.filling import VARIANTS
 from app.timeline.panel import RULER_PX
 from app.window.main_window import MainWindow
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.project import Pin, Span
 from engine.take import SHAPES, Take
 from tests.journeys.conftest import load, saved_as

@@ -31,8 +31,8 @@ from app.window.main_window import MainWindow
 from engine import project
 from engine.character import bundled, save
 from engine.formats import write_take
+from engine.lab.performer import demo
 from engine.live.replay import replay
-from engine.performance import demo
 from engine.project import Contents, Edit, Marks, Media, Note, Pin, Span
 from engine.take import Take
 from tests.engine.project.projects import an_edit

@@ -18,8 +18,8 @@ from app.session.keeper import Keeper
 from app.session.opening import Wish, opened
 from app.window.main_window import MainWindow
 from engine.formats import read_take
+from engine.lab.performer import demo
 from engine.live.replay import replay
-from engine.performance import demo
 from engine.take import Take
 
 LEFT = Qt.MouseButton.LeftButton

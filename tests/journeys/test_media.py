@@ -17,7 +17,7 @@ from pytestqt.qtbot import QtBot
 from app.bench.playback import NullSink
 from app.timeline.panel import AUDIO_PX, RULER_PX
 from app.window.main_window import MainWindow
-from engine.performance import demo
+from engine.lab.performer import demo
 from tests.films import film
 from tests.journeys.conftest import load, settled
 

@@ -14,7 +14,7 @@ from app.actions.table import ACTIONS, keys_of
 from app.dialogs.page import Page
 from app.widgets.hints import BETWEEN
 from app.window.main_window import MainWindow
-from engine.performance import demo
+from engine.lab.performer import demo
 from tests.journeys.conftest import load, noted, saved_as, settled
 from tests.journeys.test_non_expert import LIPS, drag
 from tests.pictures.compare import SIZE

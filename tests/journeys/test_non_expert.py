@@ -17,7 +17,7 @@ from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
 from engine.extended import bundled_face
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from tests.engine.project.projects import same
 from tests.journeys.conftest import load, saved_as, settled
 from tests.pictures.compare import SIZE, looks_as_it_did

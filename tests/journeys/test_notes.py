@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.window.main_window import MainWindow
-from engine.performance import demo
+from engine.lab.performer import demo
 from tests.journeys.conftest import load, noted
 
 

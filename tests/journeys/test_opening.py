@@ -15,7 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from app.window.main_window import MainWindow
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.project import Project
 from engine.take import Take
 from tests.journeys.conftest import load, noted, saved_as, settled

@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 from app.session.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.take import SHAPE_INDEX
 from tests.journeys.conftest import load, saved_as, settled
 from tests.pictures.compare import SIZE, looks_as_it_did

@@ -16,7 +16,7 @@ from app.preview.picking import places
 from app.window.main_window import MainWindow
 from engine.character import bundled, save
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.take import Take
 from tests.journeys.conftest import settled
 

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from app.window.main_window import MainWindow
 from engine import project
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.take import SHAPE_INDEX
 from tests.journeys.conftest import load, saved_as, settled
 

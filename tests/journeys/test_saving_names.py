@@ -17,7 +17,7 @@ from app.settings import Settings
 from app.window.main_window import MainWindow
 from engine import project
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.project import Contents, Project
 from tests.journeys.conftest import end, load, noted, saved_as, settled
 

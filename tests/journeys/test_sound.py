@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from app.bench.playback import NullSink
 from app.playback.clock import AudioClock
 from app.window.main_window import MainWindow
-from engine.performance import demo
+from engine.lab.performer import demo
 from tests.films import film, shade
 from tests.journeys.conftest import load, settled
 

@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.window.main_window import MainWindow
 from engine.formats import write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from tests.journeys.conftest import noted
 
 Answer = QMessageBox.StandardButton

@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
-from engine.performance import demo
+from engine.lab.performer import demo
 from tests.journeys.conftest import load, saved_as, settled
 
 LEFT, PLAIN = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier

@@ -370,7 +370,7 @@ def undisturbed(walk: Walk) -> Iterator[None]:
 def lay_out_files(folder: Path) -> None:
     """Write what may be dropped: takes, rubbish and nothing."""
     from engine.formats import write_take
-    from engine.performance import demo
+    from engine.lab.performer import demo
     from engine.take import SHAPES, Take
 
     write_take(demo.performance(), folder / "drop_take.csv")

@@ -20,10 +20,10 @@ from pathlib import Path
 
 import numpy as np
 
-from engine.clean.material import cubic
+from engine.lab.performer import demo
+from engine.lab.train.clean.material import cubic
 from engine.live.livelink import Stamp, encode
 from engine.live.replay import Network, packets, schedule
-from engine.performance import demo
 from engine.take import SHAPES, Array, Take
 
 FPS = 60.0

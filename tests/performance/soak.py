@@ -14,7 +14,7 @@ from PySide6.QtCore import QEventLoop
 from PySide6.QtWidgets import QApplication
 
 from app.window.main_window import MainWindow
-from engine.performance import demo
+from engine.lab.performer import demo
 
 ALLOWED_MB = 30.0
 

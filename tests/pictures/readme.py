@@ -15,7 +15,7 @@ from app.settings import Settings
 from app.window.main_window import MainWindow
 from engine.controls import CONTROL_INDEX
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 
 PICTURE = Path(__file__).parents[2] / "assets" / "pictures" / "window.png"
 SIZE, FRAME, BY_MM, STEPS, STEP_MS = (1440, 900), 88, -7.0, 24, 80

@@ -19,7 +19,7 @@ from app.settings import Settings
 from app.window.main_window import MainWindow
 from engine.controls import CONTROLS
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 
 FRAME, CLOSED_FRAME, PATIENCE_S = 175, 100, 60.0
 EYE = next(index for index, control in enumerate(CONTROLS) if control.area == "eyelids")

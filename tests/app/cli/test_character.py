@@ -14,7 +14,7 @@ from engine.formats import read_take
 from engine.formats.characters.animation import write
 from engine.formats.characters.moving import MovingMesh
 from engine.formats.markers import write as save_markers
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.spacetime.layout import standard
 from engine.take import SHAPE_INDEX, SHAPES
 from tests.heads import capture, write_glb

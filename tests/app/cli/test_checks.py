@@ -9,7 +9,7 @@ import typer
 
 from app import cli
 from app.cli.checks import OUTPUTS
-from engine.performance import demo
+from engine.lab.performer import demo
 
 TAKE = str(demo.BUNDLED)
 

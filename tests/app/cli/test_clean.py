@@ -10,7 +10,7 @@ import pytest
 
 from app import cli
 from engine.formats import read_take, write_take
-from engine.performance.demo import BUNDLED
+from engine.lab.performer.demo import BUNDLED
 from engine.take import Take
 
 

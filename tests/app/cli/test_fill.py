@@ -7,7 +7,7 @@ import pytest
 
 from app import cli
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.take import Take
 
 TAKE = str(demo.BUNDLED)

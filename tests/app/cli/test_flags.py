@@ -11,7 +11,7 @@ from app import cli
 from engine import project
 from engine.controls import ALL_CONTROLS, CONTROL_INDEX, measure
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.project import Contents, Edit
 from engine.take import SHAPE_INDEX, Take
 

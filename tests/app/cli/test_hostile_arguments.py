@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app import cli
-from engine.performance import demo
+from engine.lab.performer import demo
 
 TAKE = str(demo.BUNDLED)
 EDIT = ["edit", TAKE, "--control", "lips_vertical", "--frames", "3:9"]

@@ -17,8 +17,8 @@ import pytest
 from app import cli
 from engine.errors import EngineError
 from engine.formats import read_take
+from engine.lab.performer import demo
 from engine.live.replay import replay
-from engine.performance import demo
 from engine.take import Take
 
 SENT = Take(demo.performance().weights[:60], 30.0)

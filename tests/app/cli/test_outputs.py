@@ -13,7 +13,7 @@ from app import cli
 from app.cli.outputs import GOES_ON, OUTPUTS
 from engine import project
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.project import Contents
 
 PLAIN = {

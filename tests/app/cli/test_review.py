@@ -10,7 +10,7 @@ import soundfile
 
 from app import cli
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.take import SHAPE_INDEX
 
 DEMO = str(demo.BUNDLED)

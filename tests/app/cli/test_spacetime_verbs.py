@@ -13,8 +13,8 @@ from engine.character import BUNDLED, bundled, save
 from engine.formats import labels, read_take, write_take
 from engine.formats.capture import Markers
 from engine.formats.markers import write
+from engine.lab.performer import demo
 from engine.manifold.retarget import retarget_weights
-from engine.performance import demo
 from engine.spacetime.layout import standard
 from engine.spacetime.source import from_take
 from engine.take import SHAPE_INDEX, SHAPES, Take

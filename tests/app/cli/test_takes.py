@@ -10,7 +10,7 @@ from app import cli
 from engine.controls import ALL_INDEX, measure
 from engine.extended import bundled_face
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.take import Take
 
 

@@ -13,7 +13,7 @@ from app.retarget.actions import RetargetActions
 from app.session import Session
 from engine.character import Character, bundled, load, save
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.take import Take
 
 

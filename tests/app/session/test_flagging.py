@@ -12,7 +12,7 @@ from app.session.flagging import Flagging
 from engine.editing import Patch
 from engine.formats import read_take
 from engine.formats.audio import Audio
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.quality import flags_of, seen_of
 from engine.retouch import paste
 from engine.speech.lane import attached

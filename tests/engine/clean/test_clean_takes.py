@@ -8,8 +8,8 @@ from engine.clean.lag import lag_ms
 from engine.clean.network import CleanConfig, CleanNetwork
 from engine.clean.takes import clean, run
 from engine.errors import EditError
-from engine.performance.degrade import Faults, degrade
-from engine.performance.performer import Script, perform
+from engine.lab.performer.degrade import Faults, degrade
+from engine.lab.performer.performer import Script, perform
 from engine.take import Take
 
 CLEANER = Cleaner(CleanNetwork(CleanConfig(hidden=8)))

@@ -9,7 +9,7 @@ import pytest
 from engine.errors import EngineError
 from engine.formats import livelink, read_take
 from engine.formats.reading import Reading
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.take import SHAPES, Take
 
 DEMO = demo.BUNDLED.read_bytes()

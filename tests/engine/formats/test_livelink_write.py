@@ -19,8 +19,8 @@ from engine.formats.livelink_origin import GAP_S, Origin
 from engine.formats.livelink_write import UNSEEN, encode
 from engine.formats.reading import Reading, Sides
 from engine.inpaint.fill import fill, fill_lost
+from engine.lab.performer import demo
 from engine.manifold.retarget import retarget_weights
-from engine.performance import demo
 from engine.spacetime.pin import pin
 from engine.take import SHAPE_INDEX, SHAPES, Take, runs
 from tests.engine.formats.livelink_files import File, Writer, content_of, files

@@ -8,10 +8,10 @@ import torch
 
 from engine.controls import CONTROL_INDEX, CONTROLS, FEW, measure
 from engine.errors import AssetError
-from engine.inpaint import expected_train
 from engine.inpaint.expected import Expected, bundled, load
-from engine.inpaint.expected_train import Settings, fitted, given_controls, joined
-from engine.inpaint.material import Performance, synthetic
+from engine.lab.train.inpaint import expected_train
+from engine.lab.train.inpaint.expected_train import Settings, fitted, given_controls, joined
+from engine.lab.train.inpaint.material import Performance, synthetic
 from engine.models.checkpoint import save_model
 from engine.take import SHAPE_INDEX, SHAPES, Array
 

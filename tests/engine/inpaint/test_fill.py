@@ -14,9 +14,9 @@ from engine.inpaint.infer import Filler
 from engine.inpaint.network import Generator, GeneratorConfig
 from engine.inpaint.regions import REGIONS, region_shapes
 from engine.inpaint.request import Request, merged_pins
+from engine.lab.performer import demo
+from engine.lab.performer.performer import perform
 from engine.models.resample import interpolate
-from engine.performance import demo
-from engine.performance.performer import perform
 from engine.speech.visemes import Cue
 from engine.take import SHAPE_INDEX, SHAPES, Take
 

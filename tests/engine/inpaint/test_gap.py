@@ -13,8 +13,8 @@ from engine.inpaint.gap import Gap, Statistics, gap_of, ground, left_open, stati
 from engine.inpaint.infer import QUICK_FRAMES, bundled
 from engine.inpaint.network import noise_curves
 from engine.inpaint.seams import bridged
-from engine.performance import demo
-from engine.performance.performer import perform
+from engine.lab.performer import demo
+from engine.lab.performer.performer import perform
 from engine.take import SHAPES, Array
 
 SPAN = slice(60, 150)

@@ -3,13 +3,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.corpus import Piece, rest_of
 from engine.inpaint.fill import fill, fill_spans
 from engine.inpaint.gap import gap_of, ground, statistics_of
 from engine.inpaint.infer import AT_REST, _above_rest, bundled
 from engine.inpaint.lend import DRAW_IN, costs, lent, trust
 from engine.inpaint.request import Request
 from engine.inpaint.seams import distance_frames, room_frames
+from engine.lab.corpus import Piece, rest_of
 from engine.take import SHAPES, Array, Take
 
 WAVES = np.random.default_rng(0).uniform(20, 70, len(SHAPES))  # frames, a period for each shape

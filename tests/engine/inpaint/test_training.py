@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 import torch
 
-from engine.corpus import Piece
-from engine.inpaint import train as training
 from engine.inpaint.gap import FEATURES, gap_of, ground, statistics_of
 from engine.inpaint.infer import load, save_filler
-from engine.inpaint.losses import Batch, Shares, fill_losses, scatter
-from engine.inpaint.material import (
+from engine.inpaint.network import MEMORY_FRAMES, noise_curves
+from engine.lab.corpus import Piece
+from engine.lab.train.inpaint import train as training
+from engine.lab.train.inpaint.losses import Batch, Shares, fill_losses, scatter
+from engine.lab.train.inpaint.material import (
     Help,
     Performance,
     draw,
@@ -24,8 +25,7 @@ from engine.inpaint.material import (
     synthetic,
     window,
 )
-from engine.inpaint.network import MEMORY_FRAMES, noise_curves
-from engine.inpaint.train import Settings, Trainer, make_batches
+from engine.lab.train.inpaint.train import Settings, Trainer, make_batches
 from engine.speech.visemes import NAMES, Cue
 from engine.take import SHAPES
 

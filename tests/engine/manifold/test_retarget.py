@@ -6,6 +6,7 @@ import pytest
 from engine.character import bundled
 from engine.errors import EditError
 from engine.formats import read_take
+from engine.lab.performer import demo
 from engine.manifold.patches import alignment, similar
 from engine.manifold.retarget import (
     Retargeter,
@@ -17,7 +18,6 @@ from engine.manifold.retarget import (
     scaled_to,
     suggest_frames,
 )
-from engine.performance import demo
 from engine.take import SHAPE_INDEX, SHAPES, Take
 
 

@@ -15,7 +15,7 @@ from engine.errors import EngineError, FormatError
 from engine.formats import livelink
 from engine.formats.livelink_origin import Origin
 from engine.formats.livelink_write import encode
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.project import Contents, Project
 from engine.take import SHAPES, Take
 from tests.engine.project.projects import reopened, sample, sql, stored

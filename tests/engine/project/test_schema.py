@@ -13,7 +13,7 @@ import pytest
 
 from engine.errors import EngineError
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.project import Contents, Media, Note, Project, Span, replay, schema
 from engine.take import SHAPES, runs
 from tests.engine.project.projects import MARKS, reopened, same

@@ -16,7 +16,7 @@ from engine import project
 from engine.controls import ALL_CONTROLS
 from engine.errors import EngineError, FormatError
 from engine.formats import livelink
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.project import Contents, Edit, InUseError, Project
 from engine.take import SHAPES, Take
 from tests.engine.project.projects import MARKS, an_edit, reopened, same, sql

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.controls import CONTROL_INDEX, measure
-from engine.performance.corpus import synthetic_performances
+from engine.lab.performer.corpus import synthetic_performances
 from engine.regress.contacts import APART_MM, MEETING, met
 from engine.take import SHAPE_INDEX, SHAPES, Array
 

@@ -4,13 +4,13 @@ import numpy as np
 import torch
 
 from engine.controls import measure
-from engine.performance.augment import Levers
-from engine.performance.corpus import synthetic_performances
+from engine.lab.performer.augment import Levers
+from engine.lab.performer.corpus import synthetic_performances
+from engine.lab.train.regress.data import NearestFaces, Source, cut
+from engine.lab.train.regress.losses import distance_error
+from engine.lab.train.regress.requests import contradictory, exaggerated, salt_and_pepper
 from engine.regress.areas import AREAS
-from engine.regress.data import NearestFaces, Source, cut
-from engine.regress.losses import distance_error
 from engine.regress.network import BEYOND, AreaNetwork, UNetConfig
-from engine.regress.requests import contradictory, exaggerated, salt_and_pepper
 
 
 def test_a_closure_invented_weighs_like_one_missed() -> None:

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from engine.errors import EditError
 from engine.formats import read_take
+from engine.lab.performer import demo
+from engine.lab.performer.performer import Script, perform
 from engine.models.resample import interpolate
-from engine.performance import demo
-from engine.performance.performer import Script, perform
 from engine.review.align import align, on_clock_of
 from engine.take import Take
 

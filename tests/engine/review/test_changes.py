@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from engine.controls import CONTROL_INDEX, measure
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.review.changes import Edited, compare
 from engine.take import SHAPE_INDEX, Take
 

@@ -7,7 +7,7 @@ import pytest
 
 from engine.errors import EngineError
 from engine.formats import read_take, write_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.review.pairs import flags, pairs, review
 from engine.take import SHAPE_INDEX
 

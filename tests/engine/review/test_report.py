@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 import numpy as np
 
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.quality import flags_of, seen_of
 from engine.review.changes import Edited, compare
 from engine.review.report import CHART_WIDTH, Entry, Remark, Review, html, index

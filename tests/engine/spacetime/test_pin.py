@@ -8,7 +8,7 @@ import pytest
 from engine.controls import CONTROL_INDEX, measure
 from engine.errors import EditError
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.spacetime.pin import PinSolver, Spreading, pin, pose_reaching
 from engine.take import SHAPE_INDEX, Take
 

@@ -7,7 +7,7 @@ import pytest
 
 from engine.character import bundled
 from engine.formats import read_take
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.spacetime.retarget import retarget
 from engine.spacetime.source import Source, from_take
 from engine.spacetime.system import System

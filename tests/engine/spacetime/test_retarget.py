@@ -10,7 +10,7 @@ from engine.character import Character, bundled
 from engine.errors import EditError
 from engine.formats import read_take
 from engine.formats.capture import Markers
-from engine.performance import demo
+from engine.lab.performer import demo
 from engine.spacetime.align import HeadMotion
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import standard

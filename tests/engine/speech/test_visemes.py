@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from engine.errors import EditError
-from engine.performance.performer import Script, perform, phones
-from engine.performance.visemes import VISEME_OF
-from engine.speech.lipread import read_lips
+from engine.lab.performer.performer import Script, perform, phones
+from engine.lab.performer.visemes import VISEME_OF
+from engine.lab.speech.lipread import read_lips
 from engine.speech.visemes import CLASSES, NAMES, Cue, class_of, classes_over, one_hot
 
 

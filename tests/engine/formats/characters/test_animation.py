@@ -12,7 +12,7 @@ from engine.formats import read_take
 from engine.formats.characters import gltf
 from engine.formats.characters.animation import TOLERANCE, targets, write
 from engine.formats.characters.moving import MovingMesh
-from engine.performance import demo
+from engine.lab.performer import demo
 
 
 def moving() -> MovingMesh:

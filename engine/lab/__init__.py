@@ -1,0 +1,1 @@
+"""What trains, measures and builds; nothing that ships imports it."""

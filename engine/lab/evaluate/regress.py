@@ -1,0 +1,186 @@
+"""Control curves to weights: our regressor and full system against their baselines (BSBS19 table 1 and figure 8)."""
+
+from __future__ import annotations
+
+import importlib
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from engine.controls import CONTROL_INDEX, bundled_measurer
+from engine.editing import Dragger
+from engine.errors import EngineError
+from engine.lab.corpus import Piece, data_folder, load_takes, pieces_of, split
+from engine.lab.evaluate import metrics
+from engine.lab.evaluate.baselines import NAMES
+from engine.lab.evaluate.baselines.nearest import Nearest
+from engine.regress import infer
+from engine.regress.areas import AREAS
+from engine.take import MODEL_FPS, Array, Take
+
+MOUTH_MM = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0)
+EYES_MM = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0)
+LIPS = [CONTROL_INDEX["lips_vertical"]]
+LIDS = [CONTROL_INDEX["eyelid_right"], CONTROL_INDEX["eyelid_left"]]
+
+Row = dict[str, Any]
+Report = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What an editor knows of the take whose controls it changes.
+
+    Attributes
+    ----------
+    kept : (frames, 52) weights of the shapes that no method makes, the others zero
+    controls : (frames, 8) mm, as recorded, whatever is asked instead
+    weights : (frames, 52) as recorded, for a method that edits them
+    whole_face : whether they animate more than the mouth
+    """
+
+    kept: Array
+    controls: Array
+    weights: Array
+    whole_face: bool
+
+
+Method = Callable[[Array, Known], Array]  # asked controls, (frames, 8) in mm, to weights, (frames, 52)
+
+
+def pieces_to_measure(data: Path | None) -> list[Piece]:
+    """Return the test split, or every take in a folder cut at its lost runs."""
+    if data is None:
+        return split(data_folder())[2]
+    return [piece for take, whole in load_takes(data) for piece in pieces_of(take, whole_face=whole)]
+
+
+def methods(report: Report) -> dict[str, Method]:
+    """Return every method by row name; those that need the recorded takes only where these are.
+
+    `full` is the networks alone, and knows the take that is edited: what its controls do there is not held to be too much.
+    Without that knowledge, from curves alone, it is `full_of_curves`; the rows of others are of curves alone.
+    """
+    ours = infer.bundled()
+    found: dict[str, Method] = {
+        "regressor": lambda controls, _: ours.infer(controls, full=False),
+        "full": full(ours),
+        "full_of_curves": lambda controls, take: ours.infer(controls, kept=take.kept),
+        "full_without_contacts": lambda controls, take: ours.infer(controls, original=take.controls, land=False),
+    }
+    for name in NAMES:
+        found[name] = of_controls(importlib.import_module(f"engine.lab.evaluate.baselines.{name}").load().infer)
+    try:
+        found["nearest"] = of_controls(Nearest(split(data_folder())[0]).infer)
+    except EngineError:
+        report("nearest is left out: it is the recorded training takes themselves, which are not here (RETAKE_DATA)")
+    return found
+
+
+def full(ours: infer.Regressor) -> Method:
+    """Return the full system of networks, which knows the take."""
+    return lambda controls, take: ours.infer(controls, kept=take.kept, original=take.controls)
+
+
+def editor(controls: Array, take: Known) -> Array:
+    """Return what the editor makes of a take when these controls are asked of it at its default believability."""
+    asked = np.array(controls)
+    if not take.whole_face:
+        asked[:, LIDS] = np.nan
+    return Dragger(Take(weights=take.weights, fps=MODEL_FPS)).drag(0, asked).weights
+
+
+def of_controls(infer: Callable[[Array], Array]) -> Method:
+    """Return a method that looks at controls alone."""
+    return lambda controls, _: infer(controls)
+
+
+def known_of(piece: Piece) -> Known:
+    """Return what an edit leaves as it was in a piece, the shapes of all areas zero, and its recorded controls."""
+    kept = np.array(piece.weights)
+    for area in AREAS:
+        kept[:, area.shape_columns] = 0.0
+    return Known(kept, bundled_measurer().measure(piece.weights), piece.weights, piece.whole_face)
+
+
+def played(method: Method, piece: Piece) -> Array:
+    """Return a piece's weights, (frames, 52), as a method remakes them from its controls.
+
+    Weights are held to 0..1, as the editor holds them; shapes of no area, gaze among them, stay as recorded.
+    """
+    known = known_of(piece)
+    made = method(known.controls, known)
+    whole = np.array(piece.weights)
+    for area in AREAS:
+        if piece.whole_face or not area.needs_whole_face:
+            whole[:, area.shape_columns] = np.clip(made[:, area.shape_columns], 0.0, 1.0)
+    return whole
+
+
+def table(data: Path | None, report: Report) -> list[Row]:
+    """Return one row a method: mean squared error of each area, closures kept and invented.
+
+    `closure_tpr_*` and `closure_fpr_*` are means over the thresholds `MOUTH_MM` and `EYES_MM`; a rate is null where the
+    takes have no closure at all, an error where they do not animate the area.
+    """
+    pieces = pieces_to_measure(data)
+    return [{"method": name} | figures_of(method, pieces) for name, method in methods(report).items()]
+
+
+def figures_of(method: Method, pieces: Sequence[Piece]) -> Row:
+    """Return the metrics of one row of `table`."""
+    made = [played(method, piece) for piece in pieces]
+    faces = [index for index, piece in enumerate(pieces) if piece.whole_face]
+    figures: Row = {}
+    for area in AREAS:
+        chosen = faces if area.needs_whole_face else list(range(len(pieces)))
+        errors = [((made[index] - pieces[index].weights)[:, area.shape_columns] ** 2).reshape(-1) for index in chosen]
+        figures[f"mse_{area.name}"] = float(np.concatenate(errors).mean()) if errors else None
+    for part, closures in measured_closures(made, pieces).items():
+        figures[f"closure_tpr_{part}"] = _mean(closures.tpr)
+        figures[f"closure_fpr_{part}"] = _mean(closures.fpr)
+    return figures
+
+
+def measured_closures(made: Sequence[Array], pieces: Sequence[Piece]) -> dict[str, metrics.Closures]:
+    """Return the closures of the mouth, and of the eyes where the takes animate them."""
+    measure = bundled_measurer().measure
+    pairs = [(measure(one), measure(piece.weights)) for one, piece in zip(made, pieces, strict=True)]
+    eyes = [pair for pair, piece in zip(pairs, pieces, strict=True) if piece.whole_face]
+    found = {}
+    for part, chosen, columns, thresholds in (("mouth", pairs, LIPS, MOUTH_MM), ("eyes", eyes, LIDS, EYES_MM)):
+        one, other = (
+            np.concatenate([np.zeros((0, len(columns))), *(pair[side][:, columns] for pair in chosen)])
+            for side in (0, 1)
+        )
+        found[part] = metrics.closures(one, other, thresholds)
+    return found
+
+
+def _mean(rates: Array) -> float | None:
+    known = [float(rate) for rate in rates if not math.isnan(rate)]
+    return sum(known) / len(known) if known else None
+
+
+def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
+    """Draw lip and lid curves, closure rates, and requests with and without the autoencoder (figures 6, 8, 9)."""
+    from engine.lab.evaluate import regress_figures
+
+    return regress_figures.draw(data, folder, report)
+
+
+__all__ = [
+    "EYES_MM",
+    "MOUTH_MM",
+    "Known",
+    "known_of",
+    "measured_closures",
+    "methods",
+    "pieces_to_measure",
+    "played",
+    "table",
+]

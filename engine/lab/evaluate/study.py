@@ -1,0 +1,180 @@
+"""Two studies of the regressor that need many trainings, kept in the model card: takes left out, levers left out.
+
+Each training is a short one of the same kind as the shipped networks', so figures compare within a study and are worse
+than those of the networks that ship. `retake train regress_study` runs them anew.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from engine.errors import AssetError
+from engine.formats.atomic import write_bytes
+from engine.lab.corpus import Piece, load_takes, pieces_of, split, whole_faces
+from engine.lab.evaluate.baselines import ridge
+from engine.lab.evaluate.baselines.nearest import Nearest
+from engine.lab.evaluate.baselines.parts import Areas, Material
+from engine.lab.evaluate.regress import Method, figures_of, full, of_controls
+from engine.lab.evaluate.regress_edits import REQUESTS, Judge
+from engine.lab.performer.augment import Levers
+from engine.lab.train.regress.data import cut
+from engine.lab.train.regress.train import Recipe, Settings, material_of, train_area
+from engine.models.checkpoint import MODELS
+from engine.regress.areas import AREAS
+from engine.regress.infer import Regressor
+
+Row = dict[str, Any]
+Report = Callable[[str], None]
+
+_WIDTHS = (16, 32, 64)
+_PEOPLE = Recipe(_WIDTHS, (3, 3), (5e-4, 2e-3), Levers(copies=1, gain=0.6, mix=0.5, recombine=0.5), 4.0)
+SHORT = Settings(
+    recipes={
+        "lower": Recipe(_WIDTHS, (3, 3), (2e-3, 2e-3), Levers(copies=1), 4.0),
+        "upper": _PEOPLE,
+        "eyelids": _PEOPLE,
+    },
+)
+LEFT_OUT = ("S07-001", "1114_2_05")  # training takes that the study of levers measures on
+LEVERS: dict[str, dict[str, Any]] = {
+    "mirror": {"mirror": False},
+    "gain": {"gain": 0.0},
+    "warp": {"warp": 0.0},
+    "mix": {"mix": 0.0},
+    "recombine": {"recombine": 0.0},
+}
+SYNTHETIC = "synthetic performances"
+TERMS: dict[str, dict[str, Any]] = {
+    "distance loss": {"distance_share": 0.0},
+    "velocity loss": {"velocity_share": 0.0},
+}
+USES = ("without contacts", "without tempering")  # what is done when the networks are used, not when they are trained
+EDITS = ("x3", "contradictory", "salt_and_pepper")
+CARD = MODELS / "regress_lower.card.json"
+
+
+def _networks(training: Sequence[Piece], held: Sequence[Piece], settings: Settings) -> dict[str, Method]:
+    """Train briefly the areas that the held pieces animate; returns the regressor and the full system."""
+    networks = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for area in AREAS:
+            if whole_faces(held) or not area.needs_whole_face:
+                path = Path(folder) / f"{area.name}.safetensors"
+                networks[area.name], _ = train_area(area, training, held, settings, path=path, report=lambda _: None)
+    made = Regressor(networks)
+    unbound = Regressor({name: copy.deepcopy(network) for name, network in networks.items()})
+    for network in unbound.networks.values():
+        network.bound.fill_(torch.inf)
+        network.usual.fill_(torch.inf)
+    return {
+        "regressor": lambda controls, _: made.infer(controls, full=False),
+        "full": full(made),
+        "without contacts": lambda controls, take: made.infer(
+            controls, kept=take.kept, original=take.controls, land=False
+        ),
+        "without tempering": full(unbound),
+    }
+
+
+def _ridge(training: Sequence[Piece], settings: Settings) -> Method:
+    materials = []
+    for area in AREAS:
+        made = material_of(area, training, settings)
+        pieces = [piece.weights for piece in (whole_faces(training) if area.needs_whole_face else training)]
+        materials.append(Material(area, made, cut(pieces, length=settings.window, overlap=0.0)))
+    return of_controls(Areas(ridge.train(materials, lambda _: None)[0], alignment=1).infer)
+
+
+def takes(data: Path, report: Report) -> list[Row]:
+    """Return a row for each method and recorded take that was left out of its training, then means and spreads."""
+    pieces = [piece for take, whole in load_takes(data) for piece in pieces_of(take, whole_face=whole)]
+    names = list(dict.fromkeys(piece.source for piece in pieces))
+    rows: list[Row] = []
+    for name in names:
+        held = [piece for piece in pieces if piece.source == name]
+        training = [piece for piece in pieces if piece.source != name]
+        made = _networks(training, held, SHORT)
+        methods = {
+            "regressor": made["regressor"],
+            "full": made["full"],
+            "ridge": _ridge(training, SHORT),
+            "nearest": of_controls(Nearest(training).infer),
+        }
+        for method, infer in methods.items():
+            rows.append({"method": method, "take": name} | figures_of(infer, held))
+        report(f"left out {name}: " + ", ".join(f"{row['method']} {row['mse_lower']:.4f}" for row in rows[-4:]))
+    return rows + _summary(rows)
+
+
+def _summary(rows: Sequence[Row]) -> list[Row]:
+    made = []
+    for method in dict.fromkeys(row["method"] for row in rows):
+        own = [row for row in rows if row["method"] == method]
+        for name, reduce in (("mean", np.mean), ("standard deviation", np.std)):
+            row: Row = {"method": method, "take": name}
+            for key in own[0].keys() - {"method", "take"}:
+                known = [one[key] for one in own if one[key] is not None]
+                row[key] = float(reduce(known)) if known else None
+            made.append({key: row[key] for key in own[0]})
+    return made
+
+
+def levers(data: Path, report: Report) -> list[Row]:
+    """Return figures of the full system, and the regressor's errors, with every lever and with each one left out.
+
+    `times_recorded_*` is that of `regress_edits`. Measured on two training takes that these trainings do not see; the
+    test split plays no part.
+    """
+    training, validation, _ = split(data)
+    held = [piece for piece in training + validation if piece.source in LEFT_OUT]
+    seen = [piece for piece in training if piece.source not in LEFT_OUT]
+    variants = {"all": SHORT}
+    for name, change in LEVERS.items():
+        recipes = {area: replace(one, levers=replace(one.levers, **change)) for area, one in SHORT.recipes.items()}
+        variants[f"without {name}"] = replace(SHORT, recipes=recipes)
+    bare = {area: replace(one, synthetic_minutes=0.0) for area, one in SHORT.recipes.items()}
+    variants[f"without {SYNTHETIC}"] = replace(SHORT, recipes=bare)
+    variants |= {f"without {name}": replace(SHORT, **change) for name, change in TERMS.items()}
+    judge = Judge(held, seen)
+    rows: list[Row] = []
+    for name, settings in variants.items():
+        methods = _networks(seen, held, settings)
+        rows.append(_lever(name, methods["full"], methods["regressor"], held, judge))
+        if name == "all":
+            rows += [_lever(one, methods[one], methods["regressor"], held, judge) for one in USES]
+        report(f"{name}: " + ", ".join(f"{key} {value:.4f}" for key, value in rows[-1].items() if "mse" in key))
+    return rows
+
+
+def _lever(name: str, full: Method, regressor: Method, held: Sequence[Piece], judge: Judge) -> Row:
+    only = {f"regressor_{key}": value for key, value in figures_of(regressor, held).items() if "mse" in key}
+    edits = {f"times_recorded_{ask}": judge.figures(full, REQUESTS[ask])["times_recorded"] for ask in EDITS}
+    return {"name": name} | figures_of(full, held) | only | edits
+
+
+def train(data: Path, out: Path = MODELS, report: Report = print) -> None:
+    """Run both studies and write them into the card of the lower face's networks."""
+    path = out / CARD.name
+    for name, study in (("levers", levers), ("takes", takes)):
+        rows = study(data, report)
+        card = json.loads(path.read_text())
+        card["metrics"][name] = rows
+        write_bytes(path, [json.dumps(card, indent=2).encode() + b"\n"])
+
+
+def stored(name: str) -> list[Row]:
+    """Return a study's rows from the card; raises `AssetError` that says how to run it where it has none."""
+    try:
+        rows: list[Row] = json.loads(CARD.read_text())["metrics"][name]
+    except (OSError, ValueError, KeyError) as error:
+        raise AssetError("The model card has no such study.", "Run it: retake train regress_study.") from error
+    return rows

@@ -1,0 +1,1 @@
+"""Labels of speech for training: all-phone decoding and lip reading."""

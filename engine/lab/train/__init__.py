@@ -1,0 +1,1 @@
+"""Training of each network, one package per method."""

@@ -1,0 +1,1 @@
+"""Training of the inpainter and the network of the expected face."""

@@ -1,0 +1,270 @@
+"""Training the filling network (BSS20 section 3.3): first without, then with an adversary; and its twin, without to the end."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from engine.inpaint.gap import Statistics, ground, statistics_of
+from engine.inpaint.infer import Filler, save_filler
+from engine.inpaint.lend import LENDERS
+from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, noise_curves, see
+from engine.lab.corpus import Piece, recorded_seconds, split
+from engine.lab.train.inpaint.losses import Batch, Shares, fill_losses, scatter, spectrum_gap
+from engine.lab.train.inpaint.material import Help, Performance, draw, listened, performances, random_gap
+from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.models.distances import six_distances
+from engine.models.threads import one_thread
+
+Report = Callable[[str], None]
+SHARED = "inpaint_shared.partial.safetensors"  # where both ways part
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a training run depends on; the paper's values unless its place says otherwise."""
+
+    seed: int = 0
+    frames: int = 200
+    hidden: int = 128
+    batch: int = 16
+    rate: float = 1e-3  # of the discriminator, and of the generator at the parting of the ways; twice that before
+    shared_steps: int = 1400  # before the ways part: no adversary yet
+    parted_steps: int = 1300
+    filter_pace: float = 0.1  # of the filter's rate to the rest's: it has many inputs
+    shares: Shares = field(default_factory=Shares)
+    judge_steps: int = 1  # of the discriminator for one of the generator
+    average: float = 0.995  # of the generator's weights over steps: the network that is kept
+    help: Help = field(default_factory=Help)
+
+
+def make_batches(
+    material: Sequence[Performance],
+    statistics: Statistics,
+    settings: Settings,
+    rng: np.random.Generator,
+    *,
+    size: int,
+    ranks: Sequence[int | None] = (None,),
+) -> list[Batch]:
+    """Draw windows, tear holes and prepare what the generator sees, once per rank of what the take lends; None lends nothing."""
+    truths = [draw(material, settings.frames, rng) for _ in range(size)]
+    gaps = [random_gap(truth, settings.help, rng) for truth in truths]
+    made = []
+    for rank in ranks:
+        rows = []
+        for truth, gap in zip(truths, gaps, strict=True):
+            under = ground(gap if rank is not None else replace(gap, rest=()), statistics, rank or 0)
+            hole = np.isnan(gap.known)
+            rows.append((truth.weights, under.base, under.rise, under.features, hole, under.certainty[:, None]))
+        made.append(Batch(*(torch.tensor(np.stack(part), dtype=torch.float32) for part in zip(*rows, strict=True))))
+    return made
+
+
+class Trainer:
+    """One way of training, with or without an adversary, resumable after any `save`."""
+
+    def __init__(self, material: Sequence[Performance], settings: Settings, *, adversary: bool) -> None:
+        torch.manual_seed(settings.seed)
+        self._material, self.settings, self._adversary = material, settings, adversary
+        self.statistics = statistics_of(np.concatenate([one.weights for one in material]))
+        self._distances = six_distances()
+        self.generator = Generator(GeneratorConfig(hidden=settings.hidden))
+        self.generator.scale.copy_(torch.tensor(self.statistics.scale))
+        self.kept = torch.optim.swa_utils.AveragedModel(
+            self.generator,
+            multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(settings.average),  # type: ignore[no-untyped-call]
+        )
+        self.discriminator = Discriminator(settings.frames)
+        self.discriminator.scale.copy_(self._face_scale())
+        rest = [value for name, value in self.generator.named_parameters() if not name.startswith("filter")]
+        groups: list[dict[str, Any]] = [{"params": rest}, {"params": self.generator.filter.parameters()}]
+        self._make = torch.optim.Adam(groups, lr=settings.rate)
+        self._judge = torch.optim.Adam(self.discriminator.parameters(), lr=settings.rate, betas=(0.5, 0.9))
+        self.step = 0
+
+    def _face_scale(self) -> Tensor:
+        sample = torch.tensor(np.concatenate([one.weights for one in self._material[::5]]), dtype=torch.float32)
+        return see(sample[None], self._distances)[0].std(dim=0).clamp(min=0.005)
+
+    def _seen(self, weights: Tensor) -> Tensor:
+        """Return what the discriminator is fed, in units of its own spread."""
+        return see(weights, self._distances) / self.discriminator.scale
+
+    def advance(self) -> dict[str, float]:
+        """Take one step; returns every loss term by name."""
+        settings, part = self.settings, self.step >= self.settings.shared_steps
+        self.generator.filter.requires_grad_(part)
+        rng = np.random.default_rng([settings.seed, self.step])
+        torch.manual_seed(settings.seed * 1_000_003 + self.step)
+        against = part and self._adversary
+        self._pace(part)
+        size = settings.batch // 2 if against else settings.batch
+        ranks = rng.choice(LENDERS, 2, replace=False).tolist() if against else (None,)
+        batches = make_batches(self._material, self.statistics, settings, rng, size=size, ranks=ranks)
+        made = self._generate(batches, rng)
+        if against:
+            terms = self._against(batches[0], *made)
+        else:
+            shares = replace(settings.shares, far=1.0)  # truth counts everywhere: nothing else would
+            terms = _means(fill_losses(made[0], batches[0], self._distances, shares))
+        self._make.zero_grad()
+        torch.stack([term for name, term in terms.items() if not name.startswith("judge")]).sum().backward()  # type: ignore[no-untyped-call]
+        torch.nn.utils.clip_grad_norm_(self.generator.parameters(), 1.0)
+        self._make.step()
+        self.kept.update_parameters(self.generator)
+        self.step += 1
+        return {name: float(term.detach()) for name, term in terms.items()}
+
+    def _pace(self, part: bool) -> None:
+        """Halve the rate once the ways part and let it fall to a tenth of that by the end."""
+        done = (self.step - self.settings.shared_steps) / max(1, self.settings.parted_steps)
+        rate = self.settings.rate * (1 - 0.9 * done if part else 2.0)
+        for group, pace in zip(self._make.param_groups, (1.0, self.settings.filter_pace), strict=True):
+            group["lr"] = rate * pace
+
+    def _generate(self, batches: Sequence[Batch], rng: np.random.Generator) -> Tensor:
+        """Fill each window once on each ground, with different noise, (grounds, batch, frames, 52)."""
+        size, frames = batches[0].truth.shape[:2]
+        noise = torch.from_numpy(np.stack([noise_curves(frames, rng) for _ in range(len(batches) * size)]))
+        motion = self.generator(torch.cat([batch.features for batch in batches]), noise)
+        rises, bases = (torch.stack([getattr(batch, name) for batch in batches]) for name in ("rise", "base"))
+        made: Tensor = bases + rises * motion.unflatten(0, (len(batches), size))
+        return made
+
+    def _against(self, batch: Batch, one: Tensor, other: Tensor) -> dict[str, Tensor]:
+        """Let the discriminator learn, then return the generator's terms with its score (equations 2 and 3).
+
+        Each window is filled twice, with different noise over different stretches of its take, so that how fills differ
+        can be held to how truths would. Without an adversary nothing is lent: errors would teach to undo it.
+        """
+        shares, fakes = self.settings.shares, [self._seen(one), self._seen(other)]
+        pair = [fill_losses(made, batch, self._distances, shares) for made in (one, other)]
+        terms = {name: (term + pair[1][name]).mean() / 2 for name, term in pair[0].items()}
+        judged: dict[str, Tensor] = {}
+        for _ in range(self.settings.judge_steps):
+            judged = self._judge_step(self._seen(batch.truth), [fake.detach() for fake in fakes], batch.hole)
+        apart = torch.stack([spectrum_gap(made, batch, self.generator.scale) for made in (one, other)]).mean()
+        terms["adversary"] = -shares.adversary * self.discriminator(torch.cat(fakes)).mean()
+        terms["spectrum"] = shares.spectrum * apart
+        terms["scatter"] = shares.scatter * scatter(one, other, batch).mean()
+        return terms | judged
+
+    def _judge_step(self, real: Tensor, fakes: list[Tensor], hole: Tensor) -> dict[str, Tensor]:
+        """Take one step of the discriminator: each fill is judged beside the very truth that it stands in for.
+
+        All the rest of a window is alike in both and cancels out (Jolicoeur-Martineau 2018, relativistic pairs). Judged
+        apart, as in the paper, it learnt nothing in as many steps as there is time for: half of held pairs right, not 88 %.
+        """
+        lead = self.discriminator(real) - torch.stack([self.discriminator(fake) for fake in fakes])
+        hinge = (1 - lead).relu().mean()
+        share = torch.rand(len(real), 1, 1)
+        between = (share * real + (1 - share) * fakes[0]).requires_grad_()
+        slope = torch.autograd.grad(self.discriminator(between).sum(), between, create_graph=True)[0]
+        masked = slope * hole.amax(dim=2, keepdim=True)
+        penalty = self.settings.shares.penalty * (masked.flatten(1).norm(dim=1) - 1).square().mean()
+        self._judge.zero_grad()
+        (hinge + penalty).backward()
+        self._judge.step()
+        return {"judge_hinge": hinge.detach(), "judge_penalty": penalty.detach()}
+
+    def filler(self) -> Filler:
+        """Return the averaged network, ready for use."""
+        generator = Generator(self.generator.config)
+        generator.load_state_dict(self.kept.module.state_dict())
+        return Filler(generator, self.statistics)
+
+    def _parts(self) -> dict[str, Any]:
+        return {"generator": self.generator, "kept": self.kept, "discriminator": self.discriminator}
+
+    def save(self, path: Path) -> None:
+        """Write all that `load` needs to go on as if nothing had happened."""
+        tensors: dict[str, Tensor] = {}
+        for name, module in self._parts().items():
+            tensors |= {f"{name}/{key}": value.clone() for key, value in module.state_dict().items()}
+        for name, optimizer in (("make", self._make), ("judge", self._judge)):
+            for index, state in optimizer.state_dict()["state"].items():
+                tensors |= {f"{name}/{index}/{key}": torch.as_tensor(value) for key, value in state.items()}
+        save_model(path, tensors, kind="inpaint-partial", config={"step": self.step, "settings": asdict(self.settings)})
+
+    def load(self, path: Path) -> None:
+        """Go on from a saved state."""
+        tensors, config = load_model(path, kind="inpaint-partial")
+        for name, module in self._parts().items():
+            prefix = f"{name}/"
+            module.load_state_dict({k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)})
+        for name, optimizer in (("make", self._make), ("judge", self._judge)):
+            state: dict[int, dict[str, Tensor]] = {}
+            for key, value in tensors.items():
+                if key.startswith(f"{name}/"):
+                    _, index, field_name = key.split("/")
+                    state.setdefault(int(index), {})[field_name] = value
+            optimizer.load_state_dict({"state": state, "param_groups": optimizer.state_dict()["param_groups"]})
+        self.step = int(config["step"])
+
+
+def _means(losses: dict[str, Tensor]) -> dict[str, Tensor]:
+    return {name: term.mean() for name, term in losses.items()}
+
+
+def train(data: Path, out: Path = MODELS, settings: Settings | None = None, report: Report = print) -> dict[str, Any]:
+    """Train the network and its twin without adversary; writes both with their cards, returns validation figures.
+
+    Stop it at any time: it goes on from the last hundred steps. Raises `EngineError` where there are no takes.
+    """
+    from engine.lab.train.inpaint.validate import validation_figures
+
+    settings = settings or Settings()
+    training, validation, _ = split(data)
+    material = performances(training, settings.help, np.random.default_rng(settings.seed), listened(data))
+    figures: dict[str, Any] = {}
+    for name, adversary in (("inpaint", True), ("inpaint_feedforward", False)):
+        trainer = Trainer(material, settings, adversary=adversary)
+        with one_thread():
+            seconds = _run(trainer, out, name, report)
+        figures[name] = validation_figures(trainer.filler(), validation, training)
+        report(f"{name}: {figures[name]}")
+        save_filler(out / f"{name}.safetensors", trainer.filler())
+        save_card(out / f"{name}.safetensors", _card(name, training, settings, figures[name], seconds))
+        (out / f"{name}.partial.safetensors").unlink(missing_ok=True)
+    (out / SHARED).unlink(missing_ok=True)
+    return figures
+
+
+def _run(trainer: Trainer, out: Path, name: str, report: Report) -> float:
+    """Train to the end from wherever it stopped; returns the seconds that this run took."""
+    settings, shared, partial = trainer.settings, out / SHARED, out / f"{name}.partial.safetensors"
+    for earlier in (partial, shared):
+        if earlier.exists():
+            trainer.load(earlier)
+            break
+    began, last, sums = time.monotonic(), settings.shared_steps + settings.parted_steps, dict[str, float]()
+    while trainer.step < last:
+        for term, value in trainer.advance().items():
+            sums[term] = sums.get(term, 0.0) + value / 100
+        if trainer.step % 100 == 0 or trainer.step == last:
+            shown = ", ".join(f"{term} {value:.4f}" for term, value in sums.items())
+            report(f"{name} {trainer.step}/{last}: {shown} ({time.monotonic() - began:.0f} s)")
+            sums = {}
+            trainer.save(shared if trainer.step <= settings.shared_steps else partial)
+    return time.monotonic() - began
+
+
+def _card(name: str, training: Sequence[Piece], settings: Settings, metrics: dict[str, Any], seconds: float) -> Card:
+    return Card(
+        kind="inpaint",
+        data={"recorded_seconds": recorded_seconds(training), "synthetic_minutes": settings.help.synthetic_minutes},
+        split="train; figures on the last 15 % of each training take; test takes never seen",
+        seed=settings.seed,
+        commit=commit(),
+        settings=asdict(settings),
+        metrics={"validation": metrics, "training_seconds": round(seconds)},
+        notes="The twin without adversary is kept for comparison." if name.endswith("feedforward") else "",
+    )

@@ -1,0 +1,1 @@
+"""Training of the regressor, the autoencoder and the prior."""
