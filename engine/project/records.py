@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from engine.controls import ALL_CONTROLS
-from engine.formats.reading import ReadAs, Reading
+from engine.formats.base.reading import ReadAs, Reading
 from engine.take import SHAPES, Array, Mask, Take
 
 MARK = "mark"  # kind of an edit whose inputs are marks before and after
