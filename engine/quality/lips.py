@@ -10,6 +10,7 @@ from engine.anatomy import Indices
 from engine.controls import CONTROL_INDEX
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen, lowest
+from engine.quality.tuning import TUNING
 from engine.speech.visemes import NAMES
 from engine.take import SHAPE_INDEX, Mask, runs
 
@@ -70,7 +71,7 @@ def _met(seen: Seen) -> Indices:
     """Return where the lips met briefly as the take was opened and nobody has asked anything of them since, (n, 2)."""
     if seen.original_controls is None:
         return np.zeros((0, 2), np.int64)
-    met = np.array(runs(seen.original_controls[:, LIPS] < seen.tuning.closed_mm), np.int64).reshape(-1, 2)
+    met = np.array(runs(seen.original_controls[:, LIPS] < TUNING.closed_mm), np.int64).reshape(-1, 2)
     settled: Mask = seen.lost if seen.asked is None else seen.lost | ~np.isnan(seen.asked[:, LIPS])
     before = np.append(0, np.cumsum(settled))
     free = before[met[:, 1]] == before[met[:, 0]]
