@@ -220,7 +220,7 @@ class MainWindow(QMainWindow):
         self.preview.timed.connect(self.status.timed)
         self._connect_media()
         self._connect_retarget()
-        self.notes.author = lambda: self.settings.author
+        self.notes.author = self.review.section.author = lambda: self.settings.author
         self.preferences.themed.connect(self._wear)
         for clock in (self.timeline, self.status):
             self.preferences.counted.connect(clock.count_in_frames)
