@@ -18,7 +18,7 @@ from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.pose import Pose
-    from engine.take import Array
+    from engine.take import Array, Take
 
 
 def fill(
@@ -55,9 +55,8 @@ def fill(
     write_sides: WrittenSides = SAME,
 ) -> None:
     """Fill a span with believable motion, steered by as much or as little as is given."""
-    from engine.editing import parse_frames
     from engine.formats.cues import read_cues
-    from engine.inpaint.fill import fill_spans, lost_spans
+    from engine.inpaint.fill import fill_spans
     from engine.inpaint.request import Request, Style, merged_pins
     from engine.speech.visemes import begun_at
 
@@ -65,9 +64,7 @@ def fill(
     if bool(frames) == lost:
         raise EditError("Say what to fill.", "Give --frames A:B, or --lost for every lost run.")
     opened = open_take(take, fps, sides)
-    spans = lost_spans(opened) if lost else [parse_frames(text, opened) for text in frames or []]
-    if not spans:
-        raise EditError(f"{opened.name} has no lost frames.", "Give --frames A:B to fill something else.")
+    spans = _spans(opened, frames or [], lost=lost)
     request = Request(
         frames=spans[0],
         region=region,
@@ -84,6 +81,17 @@ def fill(
         path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
         save_take(one, path, write_sides)
         say(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
+
+
+def _spans(take: Take, frames: list[str], *, lost: bool) -> list[tuple[int, int]]:
+    """Return what is to be filled: the named frames, or every lost run; raises `EditError` where that is nothing."""
+    from engine.editing import parse_frames
+    from engine.inpaint.fill import lost_spans
+
+    spans = lost_spans(take) if lost else [parse_frames(text, take) for text in frames]
+    if not spans:
+        raise EditError(f"{take.name} has no lost frames.", "Give --frames A:B to fill something else.")
+    return spans
 
 
 def _said(spans: list[tuple[int, int]]) -> str:
