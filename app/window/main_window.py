@@ -57,7 +57,8 @@ from app.settings import Settings
 from app.spans.filling import Filling
 from app.spans.section import SpansSection
 from app.theme import GRID
-from app.timeline.panel import SCROLL_PX, Timeline, TimeScroll
+from app.timeline.panel import SCROLL_PX, Timeline
+from app.timeline.scroll import TimeScroll
 from app.widgets.text import PlainText, caption, tip, title
 from app.window.contexts import Contexts
 from app.window.focus import Focus
