@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from engine.live.listen import Listener
     from engine.live.record import Recorder
     from engine.live.spool import Spool
+    from engine.project import Contents
     from engine.take import Take
 
 STATUS_MS = 400
@@ -175,9 +176,9 @@ class LiveSection(Section):
         if self._waiting is not None:
             self.failed.emit("The recording waits until your edits are safe.", "Else it is offered at the next start.")
 
-    def settle(self, original: Take) -> None:
-        """Remove the growing file of a recording that another file holds by now: the one with this take."""
-        if self._unsafe is not None and self._unsafe[0] is original:
+    def settle(self, kept: Contents) -> None:
+        """Remove the growing file of a recording that another file holds by now: the one with these contents."""
+        if self._unsafe is not None and self._unsafe[0] is kept.original:
             spool, self._unsafe = self._unsafe[1], None
             if spool is not None:
                 spool.close(remove=True)
