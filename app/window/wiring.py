@@ -101,13 +101,13 @@ def _retarget(window: MainWindow) -> Rows:
     retargeting = window.retarget.retargeting
     return (
         (window.retarget.shown, window.preview.show_sides),
-        (retargeting.capture_opened, window.files.open_recording),
+        (retargeting.choosing.capture_opened, window.files.open_recording),
         (window.preview.picked, window.retarget.pick),
         (window.preview.dot_clicked, window.retarget.placing.choose),
         (window.files.capture_dropped, window.retarget.take_in),
-        (window.files.character_chosen, retargeting.show_on),
-        (retargeting.head_read, window.preview.show_character),
-        (retargeting.told, window.status.hold),
+        (window.files.character_chosen, retargeting.choosing.show_on),
+        (retargeting.choosing.head_read, window.preview.show_character),
+        (retargeting.choosing.told, window.status.hold),
     )
 
 
