@@ -54,7 +54,7 @@ def _opening(window: MainWindow) -> Rows:
     return (
         (window.files.opened, window.show_opened),
         (window.keeper.saved, window.show_saved),
-        (window.keeper.kept, window.live.settle),
+        (window.keeper.kept, window.live.recording.settle),
         (window.importing.chosen, window.curves.setFocus),
         (window.importing.hide_button.clicked, window.show_importing),
         (window.preferences.themed, window.wear),
