@@ -25,7 +25,7 @@ ELSEWHERE = {  # the others are engine.NAME.train
     "regress_baselines": "engine.lab.evaluate.baselines.train",
     "regress_study": "engine.lab.evaluate.study",
     "prior": "engine.lab.train.regress.prior_train",
-    "expected": "engine.lab.train.inpaint.expected_train",
+    "expected": "engine.lab.train.inpaint.expected",
     "motion": "engine.lab.evaluate.latent",
     "controls": "engine.lab.evaluate.regressors",
 }

@@ -14,9 +14,11 @@ from torch.nn.functional import mse_loss
 from engine.controls import CONTROL_INDEX, CONTROLS, FEW, bundled_measurer
 from engine.inpaint.expected import MEMBERS, Expected
 from engine.lab.corpus import Piece, split, whole_faces
+from engine.lab.reporting import Report
+from engine.lab.train import loop
 from engine.lab.train.inpaint.material import Help, Performance, draw, performances
-from engine.lab.train.inpaint.train import Report
-from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.lab.train.loop import Parts, Schedule, State, identity
+from engine.models.checkpoint import MODELS, Card, commit, save_card, save_model
 from engine.models.threads import one_thread
 from engine.take import SHAPES, Array, Mask
 
@@ -53,27 +55,61 @@ def given_controls(size: int, frames: int, settings: Settings, rng: np.random.Ge
     return np.asarray(shown[:, None, :] & (whole | (at < start) | (at >= start + length))[..., None])
 
 
-def fitted(material: Sequence[Performance], settings: Settings, member: int, report: Report = print) -> Expected:
-    """Return a network of one member, trained."""
-    torch.manual_seed(settings.seed + member)
-    rng = np.random.default_rng([settings.seed, member])
-    network = _standing(material)
-    optimizer = torch.optim.Adam(network.parameters(), lr=settings.rate)
-    pace = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, settings.steps, settings.rate / 20)
-    network.train()
-    for step in range(1, settings.steps + 1):
-        weights = np.stack([draw(material, settings.frames, rng).weights for _ in range(settings.batch)])
+class Trainer:
+    """One member after another; a unit of the loop is a step of one of them."""
+
+    def __init__(self, material: Sequence[Performance], settings: Settings) -> None:
+        self._material, self._settings = material, settings
+        self._members: list[Expected] = []
+        self._begin(0)
+
+    def _begin(self, member: int) -> None:
+        settings = self._settings
+        torch.manual_seed(settings.seed + member)
+        self._rng = np.random.default_rng([settings.seed, member])
+        self._network = _standing(self._material)
+        self._optimizer = torch.optim.Adam(self._network.parameters(), lr=settings.rate)
+        self._pace = torch.optim.lr_scheduler.CosineAnnealingLR(self._optimizer, settings.steps, settings.rate / 20)
+        self._network.train()
+
+    def advance(self, unit: int) -> dict[str, float]:
+        """Take one step of Adam on a batch drawn for it; returns its mean squared error."""
+        settings, (member, step) = self._settings, divmod(unit, self._settings.steps)
+        if member and step == 0:
+            self._members.append(self._network.eval())
+            self._begin(member)
+        weights = np.stack([draw(self._material, settings.frames, self._rng).weights for _ in range(settings.batch)])
         loss = mse_loss(
-            network(torch.tensor(_shown(weights, settings, rng), dtype=torch.float32)),
+            self._network(torch.tensor(_shown(weights, settings, self._rng), dtype=torch.float32)),
             torch.tensor(weights, dtype=torch.float32),
         )
-        optimizer.zero_grad()
+        self._optimizer.zero_grad()
         loss.backward()  # type: ignore[no-untyped-call]
-        optimizer.step()
-        pace.step()
-        if step % 100 == 0:
-            report(f"expected, network {member + 1}, {step}/{settings.steps}: mse {float(loss.detach()):.5f}")
-    return network.eval()
+        self._optimizer.step()
+        self._pace.step()
+        return {"mse": float(loss.detach())}
+
+    def trained(self) -> Expected:
+        """Return one network of all members."""
+        return joined([*self._members, self._network.eval()])
+
+    def _parts(self) -> Parts:
+        done = {f"member_{index}": member for index, member in enumerate(self._members)}
+        return Parts({"network": self._network, **done}, {"adam": self._optimizer}, {"batches": self._rng})
+
+    def state(self) -> State:
+        """Return the members that are done, the one under way, and what its next step depends on."""
+        rate = [group["lr"] for group in self._optimizer.param_groups]
+        return State(self._parts().tensors(), {"done": len(self._members), "rate": rate, "pace": self._pace.last_epoch})
+
+    def restore(self, state: State) -> None:
+        """Take over such a state."""
+        self._members = [_standing(self._material).eval() for _ in range(int(state.notes["done"]))]
+        self._begin(len(self._members))
+        self._parts().restore(state.tensors)
+        for group, rate in zip(self._optimizer.param_groups, state.notes["rate"], strict=True):
+            group["lr"] = rate
+        self._pace.last_epoch = int(state.notes["pace"])
 
 
 def _standing(material: Sequence[Performance]) -> Expected:
@@ -110,36 +146,37 @@ def joined(networks: Sequence[Expected]) -> Expected:
 def train(
     data: Path, out: Path = MODELS, settings: Settings | None = None, report: Report = print
 ) -> dict[str, dict[str, float]]:
-    """Train and write the networks with their card; returns validation errors. Goes on after the last whole member."""
+    """Train and write the networks with their card; returns validation errors. Goes on from the last hundred steps."""
     settings = settings or Settings()
     training, validation, _ = split(data)
     material = performances(training, settings.help, np.random.default_rng(settings.seed))
-    network = _resumed(out / PARTIAL)
     with one_thread():
-        while network is None or len(network.members) < settings.members:
-            done = 0 if network is None else len(network.members)
-            new = fitted(material, settings, done, report)
-            network = new if network is None else joined([network, new])
-            _save(out / PARTIAL, network, kind="expected-partial")
+        network = fitted(material, settings, out / PARTIAL, report)
     figures = validation_errors(network, validation)
     report(f"expected: validation mse {figures}")
-    _save(out / "expected.safetensors", network, kind="expected")
+    save_model(
+        out / "expected.safetensors",
+        network.state_dict(),
+        kind="expected",
+        config={"members": len(network.members)},
+    )
     save_card(out / "expected.safetensors", _card(training, settings, figures))
     (out / PARTIAL).unlink(missing_ok=True)
     return figures
 
 
-def _save(path: Path, network: Expected, *, kind: str) -> None:
-    save_model(path, network.state_dict(), kind=kind, config={"members": len(network.members)})
-
-
-def _resumed(path: Path) -> Expected | None:
-    if not path.exists():
-        return None
-    tensors, config = load_model(path, kind="expected-partial")
-    network = Expected(**config)
-    network.load_state_dict(tensors)
-    return network
+def fitted(material: Sequence[Performance], settings: Settings, path: Path, report: Report) -> Expected:
+    """Return the networks trained on the material; `path` is their checkpoint."""
+    trainer = Trainer(material, settings)
+    schedule = Schedule(
+        settings.members * settings.steps,
+        path,
+        identity(settings, (one.weights for one in material)),
+        label=lambda done: f"expected {done}/{settings.members * settings.steps}",
+        every=100,
+    )
+    loop.train(trainer, schedule, report)
+    return trainer.trained()
 
 
 def validation_errors(network: Expected, pieces: Sequence[Piece]) -> dict[str, dict[str, float]]:
