@@ -92,6 +92,13 @@ def split(folder: Path) -> tuple[list[Piece], list[Piece], list[Piece]]:
     return training, validation, test
 
 
+def pieces_to_measure(data: Path | None) -> list[Piece]:
+    """Return the test split, or every take in a folder cut at its lost runs."""
+    if data is None:
+        return split(data_folder())[2]
+    return [piece for take, whole in load_takes(data) for piece in pieces_of(take, whole_face=whole)]
+
+
 def _divide(pieces: list[Piece]) -> tuple[list[Piece], list[Piece]]:
     border = int((1 - VALIDATION_SHARE) * sum(len(piece.weights) for piece in pieces))
     early: list[Piece] = []
