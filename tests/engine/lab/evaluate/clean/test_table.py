@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from engine.lab.evaluate.clean import figures
 from engine.lab.evaluate.clean import table as clean
 from engine.lab.evaluate.clean.baselines import Filter, Kalman, OneEuro, savgol
 from engine.lab.performer.demo import BUNDLED
@@ -56,5 +57,5 @@ def test_the_truth_itself_has_no_error(tmp_path: Path) -> None:
 def test_figures_are_drawn(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     shutil.copy(BUNDLED, tmp_path)
-    (drawn,) = clean.figures(tmp_path, tmp_path, lambda line: None)
+    (drawn,) = figures.figures(tmp_path, tmp_path, lambda line: None)
     assert drawn.stat().st_size > 10_000
