@@ -132,11 +132,11 @@ def _projects(folder: Path) -> Iterator[tuple[str, bytes]]:
     made = sample(Take(np.random.default_rng(3).random((40, len(SHAPES))), 30.0, name="random"))
     from dataclasses import replace
 
-    from engine.project import change_between, mark_edit, viseme_edit
+    from engine.project import Verdict, change_between, mark_edit, viseme_edit
 
     lane = attached([Cue(0, 0.5, "M"), Cue(0.5, 0.9, "AA1")], "a")
     steps = (
-        mark_edit("mark", made.marks, replace(made.marks, verdict="x")),
+        mark_edit("mark", made.marks, replace(made.marks, verdicts=(Verdict("x"),))),
         viseme_edit("v", change_between(None, lane)),
     )
     yield "a.retake", stored(replace(made, edits=(*made.edits, *steps)), folder)
