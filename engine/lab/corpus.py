@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from engine import assets
 from engine.errors import EngineError
 from engine.formats import livelink
 from engine.lab import facegood
@@ -44,7 +45,7 @@ class Piece:
 def data_folder() -> Path:
     """Return the folder of recorded takes: `RETAKE_DATA`, else `../shared/data` beside the project."""
     named = os.environ.get("RETAKE_DATA")
-    return Path(named) if named else Path(__file__).resolve().parents[3] / "shared" / "data"
+    return Path(named) if named else assets.RECORDINGS
 
 
 def load_takes(folder: Path) -> list[tuple[Take, bool]]:

@@ -19,7 +19,7 @@ from engine.lab.corpus import split
 from engine.lab.reporting import Report
 from engine.lab.train.inpaint.material import Help, Performance, draw, performances
 from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
-from engine.models.unet import ALIGNMENT, UNet
+from engine.models.unet import ALIGNMENT, BatchNormUNet
 from engine.take import SHAPES, Array
 
 FRAMES, BATCH, STEPS, SEED = 64, 64, 1500, 0
@@ -61,7 +61,7 @@ class BSBS19(nn.Module):
 
     def __init__(self, inputs: int) -> None:
         super().__init__()
-        self.regressor, self.autoencoder = UNet(inputs, len(SHAPES)), UNet(len(SHAPES), len(SHAPES))
+        self.regressor, self.autoencoder = BatchNormUNet(inputs, len(SHAPES)), BatchNormUNet(len(SHAPES), len(SHAPES))
 
     def forward(self, controls: Tensor) -> Tensor:
         """Return weights, (batch, 52, frames), of standardised controls, (batch, controls, frames)."""

@@ -19,6 +19,7 @@ from engine.character import Character, bundled
 from engine.errors import EngineError
 from engine.formats.characters import ict
 from engine.formats.characters.assemble import assemble
+from engine.jaw import drawable
 from engine.lab.corpus import data_folder, pieces_to_measure, split, whole_faces
 from engine.lab.evaluate.manifold.baselines import laplacian_influence, laplacian_retarget, rbf_influence, rbf_retarget
 from engine.lab.reporting import Report, Row
@@ -26,7 +27,7 @@ from engine.manifold.drive import MeshDriver, parts_of
 from engine.manifold.placement import place_points
 from engine.manifold.pose import fit_similarity
 from engine.manifold.retarget import retarget_points, suggest_frames
-from engine.take import SHAPE_INDEX, Array
+from engine.take import Array
 
 LABELS = (2, 4, 6, 10, 20, 40)
 EXPRESSIONS, FRAMES, FACES, POINTS = 50, 100, 50, 80
@@ -74,7 +75,7 @@ def heads() -> Heads:
     part = target.triangles[(target.triangles < part_size).all(axis=1)]
     training, _, _ = split(data_folder())
     weights = np.concatenate([piece.weights for piece in whole_faces(training)])
-    sample = drawn(weights[np.random.default_rng(SEED).choice(len(weights), TRAINING_SAMPLES, replace=False)])
+    sample = drawable(weights[np.random.default_rng(SEED).choice(len(weights), TRAINING_SAMPLES, replace=False)])
     motions = np.tensordot(sample, target.deltas[:, :part_size].astype(np.float64), 1)
     allowed = np.arange(part_size) < FACE_VERTICES
     points = place_points(target.neutral[:part_size].astype(np.float64), part, motions, POINTS, allowed=allowed)
@@ -97,16 +98,8 @@ def _same_points(target: Character, points: npt.NDArray[np.int64]) -> npt.NDArra
     return np.asarray(moving[cKDTree(head.neutral[moving]).query(laid)[1]])
 
 
-def drawn(weights: Array) -> Array:
-    """Return weights, (frames, 52), as a mesh shows them: see `engine.character.drawable`."""
-    used = np.clip(weights, 0.0, 1.0)
-    jaw, close = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
-    used[:, close] = np.minimum(used[:, close], used[:, jaw])
-    return used
-
-
 def _performances(data: Path | None) -> list[Array]:
-    found = [drawn(piece.weights) for piece in whole_faces(pieces_to_measure(data)) if len(piece.weights) >= FRAMES]
+    found = [drawable(piece.weights) for piece in whole_faces(pieces_to_measure(data)) if len(piece.weights) >= FRAMES]
     if not found:
         raise EngineError(f"There is no whole-face take of {FRAMES} frames or more.", "Name a folder of longer takes.")
     return found

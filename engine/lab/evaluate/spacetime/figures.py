@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
+from engine.jaw import drawable
 from engine.lab.corpus import pieces_to_measure
 from engine.lab.evaluate.plots import pyplot
 from engine.lab.evaluate.spacetime.table import CLOSED_MM, METHODS, carry, heads
 from engine.lab.reporting import Report
-from engine.spacetime.source import from_take, shown
+from engine.spacetime.source import from_take
 from engine.take import MODEL_FPS, Take
 
 FIGURE_FRAMES = 400
@@ -23,7 +24,7 @@ def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
     """
     plots = pyplot()
     piece = max(pieces_to_measure(data), key=lambda each: float(each.weights.std(axis=0).sum()))
-    truth = shown(piece.weights[:FIGURE_FRAMES])
+    truth = drawable(piece.weights[:FIGURE_FRAMES])
     ours, other = heads()
     source = from_take(Take(truth, MODEL_FPS), ours.character, ours.layout)
     figure = plots.Figure(figsize=(11, 8), layout="constrained")
@@ -34,7 +35,7 @@ def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
         moved = there[:, used.shapes] @ used.basis.T - used.motion
         error = np.sqrt((np.diff(moved, axis=0) ** 2).sum(axis=1) / len(ours.layout.names))
         speed.plot(error, label=name, linewidth=0.9)
-        apart = other.gaps.sizes(shown(there))
+        apart = other.gaps.sizes(drawable(there))
         lips.plot(apart[:, 0], linewidth=0.9)
         lid.plot(apart[:, 3], linewidth=0.9)
     for axes, column in ((lips, 0), (lid, 3)):

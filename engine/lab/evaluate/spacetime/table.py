@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from engine.character import Character, bundled
+from engine.jaw import drawable
 from engine.lab.corpus import Piece, data_folder, pieces_to_measure
 from engine.lab.evaluate.spacetime import second_head as ict
 from engine.lab.evaluate.spacetime.baselines import RANGE, per_frame, per_frame_bounded, per_frame_prior
@@ -18,7 +19,7 @@ from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import Layout, standard
 from engine.spacetime.matching import Matching
 from engine.spacetime.retarget import Correspondence, correspond, match, with_jaw, without_jaw
-from engine.spacetime.source import Source, from_take, shown, still_of_noise
+from engine.spacetime.source import Source, from_take, still_of_noise
 from engine.take import MODEL_FPS, Array, Mask, Take
 
 PRIOR_ALPHA = 0.3  # of the per-frame prior, chosen on training takes as our own settings were
@@ -128,7 +129,7 @@ def _round_trip(
     piece: Piece, method: Callable[[Correspondence], Array], condition: str, rng: np.random.Generator
 ) -> dict[str, float]:
     ours, other = heads()
-    truth = shown(piece.weights)
+    truth = drawable(piece.weights)
     played = from_take(Take(truth, MODEL_FPS), ours.character, ours.layout)
     captured = CONDITIONS[condition](played, rng)
     captured = replace(
@@ -154,8 +155,8 @@ def _round_trip(
         "outside": float(((weights < RANGE[0]) | (weights > RANGE[1])).sum()),
         "weights": float(weights.size),
         "closed": float(closed.sum()),
-        "missed": float((closed & (ours.gaps.sizes(shown(back)) >= CLOSED_MM)).sum()),
-        "missed_there": float((closed & (other.gaps.sizes(shown(there)) >= CLOSED_MM)).sum()),
+        "missed": float((closed & (ours.gaps.sizes(drawable(back)) >= CLOSED_MM)).sum()),
+        "missed_there": float((closed & (other.gaps.sizes(drawable(there)) >= CLOSED_MM)).sum()),
         "weight_error": float(away.sum()),
         "weights_back": float(away.size),
     }
