@@ -23,10 +23,11 @@ from engine.jaw import drawable
 from engine.lab.corpus import data_folder, pieces_to_measure, split, whole_faces
 from engine.lab.evaluate.manifold.baselines import laplacian_influence, laplacian_retarget, rbf_influence, rbf_retarget
 from engine.lab.reporting import Report, Row
-from engine.manifold.drive import MeshDriver, parts_of
+from engine.manifold.drive import MeshDriver
 from engine.manifold.placement import place_points
 from engine.manifold.pose import fit_similarity
 from engine.manifold.retarget import retarget_points, suggest_frames
+from engine.mesh import parts_of
 from engine.take import Array
 
 LABELS = (2, 4, 6, 10, 20, 40)
