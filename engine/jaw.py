@@ -27,7 +27,8 @@ def limited(weights: Weights) -> Weights:
 
 def drawable(weights: Weights) -> Weights:
     """Return weights, (..., 52), limited to what a mesh can show: 0..1, and lips that close no further than the jaw."""
-    used = np.clip(weights, 0.0, 1.0)
+    used = weights.copy()
+    np.clip(used, 0.0, 1.0, out=used)
     used[..., CLOSE] = np.minimum(used[..., CLOSE], used[..., JAW])
     return used
 
