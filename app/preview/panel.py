@@ -30,9 +30,11 @@ from PySide6.QtWidgets import (
 
 from app.preview.camera import PRESETS, Camera, looking
 from app.preview.kept import KeptPictures
+from app.preview.marking import Marking, Plane, camera_of, draw_strokes, seen_alike
 from app.preview.overlay import Overlay, draw_scale
 from app.preview.picking import vertex_under
 from app.preview.renderer import GROUND, Picture, Shot
+from app.preview.wipe import Wipe
 from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
 from app.session.inference import Inference
@@ -41,10 +43,11 @@ from app.theme import GRID
 from app.widgets.text import Label
 from engine.character import Character, bundled
 from engine.framing import framed
+from engine.project import Drawing
 from engine.take import Array
 from engine.words import SENTENCE_LENGTH, plain
 
-VIEWS = ("Before", "After", "Split", "Difference")
+VIEWS = ("Before", "After", "Wipe", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
 WIDE = 0.6  # of what preview and curves share, for two heads
@@ -69,6 +72,9 @@ class Face(QWidget):
         self.view = self.pictured = "After"  # what is chosen, and what the picture shows by now
         self.message = "Preparing the preview…"
         self.overlay: Overlay | None = None
+        self.wipe, self.marking = Wipe(), Marking()
+        self.noted: tuple[Drawing, ...] = ()  # of the notes at the playhead
+        self.head: Character | None = None  # that is shown; None is the bundled one
         self._grip: QPointF | None = None
         self._pressed_at = QPointF()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -94,7 +100,10 @@ class Face(QWidget):
         painter.fillRect(self.rect(), QColor(*GROUND))
         if not self.image.isNull():
             painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-            painter.drawImage(self.picture_box(), self.image)
+            if self.pictured == "Wipe":
+                self.wipe.draw(painter, self.image, self.picture_box())
+            else:
+                painter.drawImage(self.picture_box(), self.image)
         painter.setPen(QColor("#e3e6eb"))
         if self.message:
             flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
@@ -108,10 +117,31 @@ class Face(QWidget):
             painter.drawText(middle + GRID, 18, "after")
         elif self.pictured == "Difference":
             draw_scale(painter, self.height())
+        elif self.pictured == "Wipe":
+            self.wipe.draw_line(painter, self.picture_box())
+        if self.overlay is None and self.pictured != "Split" and not self.message:
+            self._draw_marks(painter)
+
+    def _draw_marks(self, painter: QPainter) -> None:
+        """Draw the lines of the notes at the playhead, and those under way."""
+        strokes = [stroke for each in self.noted if seen_alike(each, self.camera) for stroke in each.strokes]
+        if strokes or self.marking.strokes:
+            draw_strokes(painter, self._plane(), [*strokes, *self.marking.strokes])
+
+    def _plane(self) -> Plane:
+        return Plane(self.head or bundled(), self.camera, width=self.width(), height=self.height())
+
+    def draw_on(self, on: bool) -> None:
+        """Let a drag draw on the picture, or turn the face again and forget what was drawn."""
+        self.marking.on = on
+        self.marking.drop()
+        self._show_pointer(QPointF(-1.0, 0.0))
+        self.update()
 
     def picture_box(self) -> QRectF:
         """Return where the picture is: everywhere; one of another format in its own, until the next one comes."""
-        width = self.image.width() * self.height() / max(1, self.image.height())
+        pictures = 2 if self.pictured == "Wipe" else 1
+        width = self.image.width() / pictures * self.height() / max(1, self.image.height())
         if abs(width - self.width()) <= ROUNDED_PX:
             return QRectF(self.rect())
         return QRectF((self.width() - width) / 2, 0.0, width, self.height())
@@ -128,12 +158,30 @@ class Face(QWidget):
         self.resized.emit()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Take hold of the camera."""
+        """Take hold of the camera, or of the line between before and after; or begin to draw."""
         self._grip = self._pressed_at = event.position()
-        self.setCursor(Qt.CursorShape.ClosedHandCursor)
+        x, left = event.position().x(), event.button() == Qt.MouseButton.LeftButton
+        if left and self.pictured == "Wipe" and self.wipe.is_at(x, self.width()):
+            self.wipe.held = True
+        elif left and self.marking.on:
+            self.marking.begin(self._plane().point(x, event.position().y()))
+            self.update()
+        else:
+            self.setCursor(Qt.CursorShape.ClosedHandCursor)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Orbit or pan."""
+        """Orbit or pan; move the line, or draw."""
+        at = event.position()
+        if self.wipe.held:
+            self.wipe.move_to(at.x(), self.width())
+            self.update()
+            return
+        if self.marking.busy:
+            self.marking.go_on(self._plane().point(at.x(), at.y()))
+            self.update()
+            return
+        if self._grip is None:
+            self._show_pointer(at)
         if self._grip is None or (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX:
             return
         moved = event.position() - self._grip
@@ -147,12 +195,23 @@ class Face(QWidget):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Let go; a press that went nowhere is a click."""
         self._grip = None
+        if self.wipe.held or self.marking.busy:
+            self.wipe.held = False
+            self.marking.end()
+            self._show_pointer(event.position())
+            return
         clicked = (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX
         if clicked and event.button() == Qt.MouseButton.RightButton:
             self.menu_wanted.emit(event.globalPosition().toPoint())
         elif clicked:
             self.clicked.emit(event.position())
-        self.setCursor(Qt.CursorShape.OpenHandCursor)
+        self._show_pointer(event.position())
+
+    def _show_pointer(self, at: QPointF) -> None:
+        """Show by the pointer what a press would do."""
+        shape = Qt.CursorShape.CrossCursor if self.marking.on else Qt.CursorShape.OpenHandCursor
+        on_line = self.pictured == "Wipe" and self.wipe.is_at(at.x(), self.width())
+        self.setCursor(Qt.CursorShape.SplitHCursor if on_line else shape)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Frame the whole head from the front."""
@@ -216,6 +275,7 @@ class PreviewPanel(QFrame):
         self.drawing.done.connect(self._arrived)
         self.drawing.failed.connect(self._refused)
         self._lay_out()
+        self.face.setMouseTracking(True)
         self.face.camera_moved.connect(lambda _: self.refresh())
         self.face.resized.connect(self.refresh)
         self.face.clicked.connect(self._pick)
@@ -265,6 +325,41 @@ class PreviewPanel(QFrame):
         self.view_changed.emit(name)
         self.refresh(moving=False)  # nothing moves: a coarse picture first would flicker
 
+    def step_wipe(self, by: int) -> None:
+        """Move the line between before and after a step; the view is changed to the one that has it."""
+        if self.face.view != "Wipe":
+            self.show_view("Wipe")
+        self.face.wipe.step(by)
+        self.face.update()
+
+    def draw_on(self, on: bool) -> None:
+        """Let a drag draw on the picture of one face, or turn it again."""
+        if on and self.face.view == "Split":
+            self.show_view("After")
+        self.face.draw_on(on)
+
+    def drawn(self) -> Drawing | None:
+        """Return what was drawn on the picture since it was last asked for."""
+        drawing = self.face.marking.taken(self.face.camera)
+        self.face.update()
+        return drawing
+
+    def look_at(self, drawing: Drawing) -> None:
+        """Look at the face from where a drawing was drawn."""
+        camera = camera_of(drawing)
+        if camera is not None and camera != self.face.camera:
+            self.face.camera = camera
+            self.refresh(moving=False)
+
+    def _show_noted(self) -> None:
+        """Show what was drawn for the notes at the playhead."""
+        frame, notes = self._session.playhead, self._session.marks.notes
+        here = (note.drawing for note in notes if note.frame <= frame < note.stop and note.drawing is not None)
+        noted = () if self._live is not None else tuple(here)
+        if noted != self.face.noted:
+            self.face.noted = noted
+            self.face.update()
+
     def look_from(self, name: str) -> None:
         """Look at the face from a named place."""
         head = (self._sides[0].head if self._sides else self._character) or bundled()
@@ -275,7 +370,7 @@ class PreviewPanel(QFrame):
 
     def show_character(self, character: Character | None) -> None:
         """Show another head; None is the bundled one."""
-        self._character = character
+        self._character = self.face.head = character
         self.refresh()
 
     def close_renderer(self) -> None:
@@ -289,11 +384,13 @@ class PreviewPanel(QFrame):
             return
         self._coarse = moving and self._spent_ms > BUDGET_MS
         ratio = self.devicePixelRatioF() * (0.5 if self._coarse and self._quick_ms > BUDGET_MS else 1.0)
-        size = (int(self.face.width() * ratio), int(self.face.height() * ratio))
+        pictures = 2 if self._wiped else 1
+        size = (pictures * int(self.face.width() * ratio), int(self.face.height() * ratio))
         self._asked_at = time.perf_counter()
         shot = replace(self._shot(), size=size, smooth_edges=not self._coarse)
         live = self._live is not None
-        wanted = Wanted(shot, self._character, since, live=live, sides=self._sides, view=self.face.view)
+        view = "After" if live or self._sides else self.face.view
+        wanted = Wanted(shot, self._character, since, live=live, sides=self._sides, view=view)
         kept = self._kept.get(wanted)
         self._from_kept = kept is not None
         if kept is not None:
@@ -335,6 +432,11 @@ class PreviewPanel(QFrame):
     def _show_frame(self) -> None:
         self._frame_label.setText("live" if self._live is not None else f"frame {self._session.playhead:,}")
 
+    @property
+    def _wiped(self) -> bool:
+        """Whether two whole pictures are wanted, one over the other."""
+        return self.face.view == "Wipe" and self._live is None and not self._sides
+
     def _shot(self) -> Shot:
         session, view = self._session, self.face.view
         after = session.frame_weights(session.playhead)
@@ -347,7 +449,7 @@ class PreviewPanel(QFrame):
             return Shot(tuple(side.weights for side in self._sides), camera, heads=heads)
         if view == "Before":
             return Shot((before,), camera)
-        if view == "Split":
+        if view in ("Split", "Wipe"):
             return Shot((before, after), camera)
         if view == "Difference":
             return Shot((after,), camera, compared_to=before)
@@ -363,7 +465,7 @@ class PreviewPanel(QFrame):
         spent = (time.perf_counter() - self._asked_at) * 1e3
         if wanted.shot.smooth_edges:
             self._spent_ms = spent
-        elif wanted.shot.size[0] > 0.75 * self.face.width() * self.devicePixelRatioF():
+        elif wanted.shot.size[1] > 0.75 * self.face.height() * self.devicePixelRatioF():
             self._quick_ms = spent
         self._kept.put(wanted, picture)
         if self._from_kept:
@@ -399,7 +501,9 @@ class PreviewPanel(QFrame):
 
     def _on_change(self, change: Change) -> None:
         if change & Change.CHARACTER:
-            self._character = self._session.character
+            self._character = self.face.head = self._session.character
+        if change & (Change.TAKE | Change.MARKS | Change.PLAYHEAD):
+            self._show_noted()
         if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.CHARACTER):
             session = self._session
             self._show_frame()

@@ -12,6 +12,7 @@ from app.session.session import MEDIA, Session
 from engine.extended import bundled_face
 from engine.formats.reading import ReadAs
 from engine.project import (
+    ALIGN,
     MARK,
     READING,
     Contents,
@@ -216,6 +217,37 @@ class ReadingCommand(QUndoCommand):
         self._session.read_as(self._before)
 
 
+class AlignCommand(QUndoCommand):
+    """Puts the take before at another time on the clock of the one after.
+
+    Parameters
+    ----------
+    session : in which both are
+    edit : of the kind ALIGN, with the rows that the take before gets
+    """
+
+    def __init__(self, session: Session, edit: Edit) -> None:
+        super().__init__(edit.title)
+        self._session, self.edit = session, edit
+        self._before = session.original.weights, session.original.lost
+
+    @classmethod
+    def restored(cls, session: Session, edit: Edit, before: Before) -> AlignCommand:
+        """Return the command of a stored edit, which replaced the weights and lost frames of `before`."""
+        command = cls.__new__(cls)
+        QUndoCommand.__init__(command, edit.title)
+        command._session, command.edit, command._before = session, edit, (before[0], before[2])
+        return command
+
+    def redo(self) -> None:
+        """Do it, first or again."""
+        self._session.set_original(self.edit.weights, self.edit.still_lost(self.edit.weights, self._before[1]))
+
+    def undo(self) -> None:
+        """Take it back."""
+        self._session.set_original(*self._before)
+
+
 def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[QUndoCommand]:
     """Yield the commands of a project's edits, oldest first."""
     for edit, before, change in zip(contents.edits, state.before, state.changes, strict=True):
@@ -225,5 +257,7 @@ def restored(session: Session, contents: Contents, state: Replayed) -> Iterator[
             yield MarkCommand.restored(session, edit)
         elif edit.kind == READING:
             yield ReadingCommand.restored(session, edit)
+        elif edit.kind == ALIGN:
+            yield AlignCommand.restored(session, edit, before)
         else:
             yield EditCommand.restored(session, edit, before)

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject
 from app.background import LatestWins
 from app.session.session import Change, Session
 from engine.formats.audio import Audio
-from engine.quality import Flag, flags_after, flags_of, seen_of, sound_of
+from engine.quality import Flag, FlagSettings, flags_after, flags_of, parted, seen_of, sound_of
 from engine.speech.lane import VisemeLane
 from engine.take import Array, Take
 
@@ -31,6 +31,7 @@ class _Look:
     audio_offset_s: float
     known: tuple[Flag, ...] | None
     touched: Frames
+    settings: FlagSettings
 
 
 class Flagging(QObject):
@@ -44,7 +45,8 @@ class Flagging(QObject):
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
-        self._known: tuple[Flag, ...] | None = None
+        self._known: tuple[Flag, ...] | None = None  # what was dismissed among them
+        self._wanted = session.marks.flags, session.marks.dismissals
         self._number = 0
         self._touched: list[tuple[int, Frames]] = []  # by the look that it was first part of; not in `_known` yet
         self._work = LatestWins(_look, name="flags")
@@ -63,9 +65,12 @@ class Flagging(QObject):
         self._work.stop()
 
     def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.READING):
+        wanted, self._wanted = self._wanted, (self._session.marks.flags, self._session.marks.dismissals)
+        if change & (Change.TAKE | Change.READING) or wanted[0] != self._wanted[0]:
             self._known, self._touched = None, []
             self._submit((0, len(self._session.take)))
+        elif wanted[1] != self._wanted[1]:
+            self._show()
         elif change & Change.CURVES:
             self._submit(self._session.touched)
         elif change & (Change.VISEMES | Change.MEDIA):  # what they tell is looked for in the whole take
@@ -89,15 +94,22 @@ class Flagging(QObject):
                 session.offset_s("audio"),
                 self._known,
                 everywhere,
+                session.marks.flags,
             )
         )
 
     def _arrived(self, look: _Look, flags: tuple[Flag, ...]) -> None:
-        if look.original is not self._session.original:
-            return  # that take is closed
+        marks = self._session.marks
+        if look.original is not self._session.original or look.settings != marks.flags:
+            return  # that take is closed, or something else is looked for by now
         self._known = flags
         self._touched = [entry for entry in self._touched if entry[0] > look.number]
-        self._session.set_flags(flags)
+        self._show()
+
+    def _show(self) -> None:
+        """Tell the session which findings count, and which were dismissed."""
+        if self._known is not None:
+            self._session.set_flags(*parted(self._known, self._session.marks.dismissals))
 
 
 def _look(look: _Look) -> tuple[Flag, ...]:
@@ -105,4 +117,6 @@ def _look(look: _Look) -> tuple[Flag, ...]:
     audio, fps = look.audio, look.take.fps
     sound = sound_of(audio, fps=fps, offset_s=look.audio_offset_s) if audio is not None else None
     seen = seen_of(look.take, look.original, look.asked, look.visemes, controls=controls, sound=sound)
-    return flags_of(seen) if look.known is None else flags_after(look.known, seen, look.touched)
+    if look.known is None:
+        return flags_of(seen, look.settings)
+    return flags_after(look.known, seen, look.touched, look.settings)

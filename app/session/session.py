@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from enum import Flag, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -84,6 +85,7 @@ class Session(QObject):
     marks : spans, pins, notes, media and verdict
     visemes : what is said when, or None
     flags : what was found automatically, by the first frame; None while it is looked for
+    dismissed : findings that somebody does not mind, which are no `flags`
     differences : half-open ranges of frames that differ from the recording; None while nobody looks
     touched : the half-open range of frames that changed last
     character : whose head the weights are for; None for the bundled one
@@ -115,6 +117,7 @@ class Session(QObject):
         self.marks = Marks(spans=tuple(Span(start, stop, kind="lost") for start, stop in runs(take.lost)))
         self.visemes: VisemeLane | None = None
         self.flags: tuple[quality.Flag, ...] | None = None
+        self.dismissed: tuple[quality.Flag, ...] = ()
         self.differences: tuple[tuple[int, int], ...] | None = None
         self.touched = (0, len(take))
         self.draft: Patch | None = None
@@ -197,9 +200,18 @@ class Session(QObject):
         told = Change.READING | Change.CURVES | Change.DRAFT | Change.VIEW | Change.MARKS | Change.MEDIA
         self.changed.emit(told | Change.VISEMES | Change.SELECTION)
 
-    def set_flags(self, flags: tuple[quality.Flag, ...]) -> None:
-        """Show what was found automatically."""
-        self.flags = flags
+    def set_original(self, weights: Array, lost: Mask) -> None:
+        """Put another take before the edits in place, of the same frames; for commands only."""
+        if self._restoring:
+            return  # what the steps come to is known
+        self.original = replace(self.original, weights=weights, lost=lost)
+        self.original_controls = _measured(self.original)
+        self.touched = (0, len(self.take))
+        self.changed.emit(Change.READING | Change.CURVES | Change.DRAFT)
+
+    def set_flags(self, flags: tuple[quality.Flag, ...], dismissed: tuple[quality.Flag, ...] = ()) -> None:
+        """Show what was found automatically, and which findings somebody does not mind."""
+        self.flags, self.dismissed = flags, dismissed
         self.changed.emit(Change.FLAGS)
 
     def set_differences(self, ranges: tuple[tuple[int, int], ...] | None) -> None:

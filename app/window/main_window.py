@@ -123,7 +123,10 @@ class MainWindow(QMainWindow):
         self.notes = NotesSection(self.session)
         self.flags = FlagsSection(self.session)
         self.marks, self.views = MarkActions(self.session, self.notes, self.spans), ViewActions(self.preview)
-        self.retarget, self.review = RetargetActions(self.session, self), ReviewActions(self.session, self)
+        self.retarget, self.review = (
+            RetargetActions(self.session, self),
+            ReviewActions(self.session, self.transport, self),
+        )
         sections = (
             self.brush,
             self.value,
@@ -133,10 +136,12 @@ class MainWindow(QMainWindow):
             *self.retarget.sections,
             self.smoothing,
             self.spans,
+            self.review.queue,
             self.review.section,
             self.facts,
             self.flags,
             self.notes,
+            self.review.verdict,
             self.attached,
         )
         self.inspector = Inspector(self.session, sections)
@@ -220,7 +225,12 @@ class MainWindow(QMainWindow):
         self.preview.timed.connect(self.status.timed)
         self._connect_media()
         self._connect_retarget()
-        self.notes.author = self.review.section.author = lambda: self.settings.author
+        for signed in (self.notes, self.flags, self.review.verdict):
+            signed.author = lambda: self.settings.author
+        self.notes.drawn = self.preview.drawn
+        self.notes.drawing_wanted.connect(self.preview.draw_on)
+        self.notes.drawing_wanted.connect(self.actions_by_name["draw_mark"].setChecked)
+        self.notes.looked_at.connect(self.preview.look_at)
         self.preferences.themed.connect(self._wear)
         for clock in (self.timeline, self.status):
             self.preferences.counted.connect(clock.count_in_frames)
@@ -234,7 +244,7 @@ class MainWindow(QMainWindow):
         self.smoothing.dropped.connect(self.inference.cancel)
         self.edits.cutoff_hz = self.smoothing.cutoff.value
         self.edits.let_go = self.timeline.visemes.drop
-        for told in (self.edits.told, self.time.told, self.timeline.told):
+        for told in (self.edits.told, self.time.told, self.timeline.told, self.marks.told):
             told.connect(self.status.tell)
         self.edits.put_away = self.notices.put_away
         self.time.looping = self.actions_by_name["loop"].isChecked
@@ -242,7 +252,8 @@ class MainWindow(QMainWindow):
         self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
         self.review.told.connect(self.status.tell)
-        self.review.open_take = self.files.open_then
+        self.review.open_take, self.review.load = self.files.open_then, self.files.load
+        self.review.looped.connect(self.actions_by_name["loop_change"].setChecked)
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
         self.timeline.visemes.wanted.connect(self._do)
@@ -455,3 +466,5 @@ class MainWindow(QMainWindow):
     def _show_transport(self) -> None:
         self.actions_by_name["play"].setChecked(self.transport.playing)
         self.actions_by_name["play"].setIconText("❚❚" if self.transport.playing else "▶")
+        self.status.show_speed(self.transport.speed)
+        self.actions_by_name["loop"].setChecked(self.transport.loop)
