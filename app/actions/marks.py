@@ -76,7 +76,7 @@ class MarkActions(QObject):
 
     def _step(self, by: int) -> None:
         session, notes = self._session, self._notes
-        note = following(session.marks.notes, session.playhead, notes.chosen, by=by)
+        note = following(session.document.marks.notes, session.view.playhead, notes.chosen, by=by)
         if note is not None:
             notes.go_to(note)
         else:
@@ -85,16 +85,18 @@ class MarkActions(QObject):
     def remove_pin(self) -> None:
         """Remove the pin at the playhead; the pose stays as it is."""
         session = self._session
-        rest = tuple(pin for pin in session.marks.pins if pin.frame != session.playhead)
-        if rest == session.marks.pins:
+        rest = tuple(pin for pin in session.document.marks.pins if pin.frame != session.view.playhead)
+        if rest == session.document.marks.pins:
             self.failed.emit("There is no pin on this frame.", "Right-click one in the pins lane.")
         else:
-            session.undo.push(MarkCommand(session, replace(session.marks, pins=rest), "remove a pin"))
+            session.document.undo.push(
+                MarkCommand.of(session.document, replace(session.document.marks, pins=rest), "remove a pin")
+            )
 
     def _note_here(self) -> Note | None:
         """Return the note at the playhead: the chosen one, else the newest that begins here, else any around it."""
-        chosen, frame = self._notes.chosen, self._session.playhead
-        around = [note for note in self._session.marks.notes if note.frame <= frame < note.stop]
+        chosen, frame = self._notes.chosen, self._session.view.playhead
+        around = [note for note in self._session.document.marks.notes if note.frame <= frame < note.stop]
         if not around:
             self.failed.emit("There is no note on this frame.", "Right-click one in the notes lane.")
             return None

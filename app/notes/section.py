@@ -104,26 +104,26 @@ class NotesSection(Section):
         if note is not None:
             new = steps.settled(note, author=self.author())
             title = "resolve a note" if new.resolved else "open a note again"
-            self._put(steps.exchanged(self.session.marks, note, new), title, choose=new)
+            self._put(steps.exchanged(self.session.document.marks, note, new), title, choose=new)
 
     def delete(self, note: Note | None) -> None:
         """Delete a note."""
         if note is not None:
-            self._put(steps.deleted(self.session.marks, note), "delete a note")
+            self._put(steps.deleted(self.session.document.marks, note), "delete a note")
 
     def go_to(self, note: Note, *_: bool) -> None:
         """Go to a note: its first frame, and with a drawing to where it was drawn from."""
         self.chosen = note
-        self.session.move_playhead(note.frame)
+        self.session.view.move_playhead(note.frame)
         if note.frames > 1:
-            self.session.select((note.frame, note.stop))
+            self.session.view.select((note.frame, note.stop))
         if note.drawing is not None:
             self.looked_at.emit(note.drawing)
         self._show()
 
     def frames_here(self) -> tuple[int, int]:
         """Return what a new note is on, its first frame and how many: the selection around the playhead, or one frame."""
-        here, chosen = self.session.playhead, self.session.selection
+        here, chosen = self.session.view.playhead, self.session.view.selection
         return (chosen[0], chosen[1] - chosen[0]) if chosen and chosen[0] <= here < chosen[1] else (here, 1)
 
     def _take_up(self, note: Note | None) -> None:
@@ -156,7 +156,7 @@ class NotesSection(Section):
 
     def _typed(self) -> None:
         """Keep what was typed: as a new note, as the new text of the one changed, or as a reply."""
-        text, drawing, marks = self.entry.text().strip(), self.drawn(), self.session.marks
+        text, drawing, marks = self.entry.text().strip(), self.drawn(), self.session.document.marks
         changing, answering = self._changing, self._answering
         region = REGIONS[self.region.currentText()]
         if answering is not None and any(each is answering for each in marks.notes):
@@ -179,10 +179,10 @@ class NotesSection(Section):
         kept = region if region != "face" or note.region in REGION_TITLES else note.region
         if text != plain(note.text) or kept != note.region or drawing is not None:
             new = steps.rewritten(note, text, author=self.author(), region=kept, drawing=drawing)
-            self._put(steps.exchanged(self.session.marks, note, new), "change a note", choose=new)
+            self._put(steps.exchanged(self.session.document.marks, note, new), "change a note", choose=new)
 
     def _put(self, marks: Marks, title: str, *, choose: Note | None = None) -> None:
-        self.session.undo.push(MarkCommand(self.session, marks, title))
+        self.session.document.undo.push(MarkCommand.of(self.session.document, marks, title))
         self.chosen = choose
         self._show()
 
@@ -190,7 +190,7 @@ class NotesSection(Section):
 
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.MARKS):
-            notes = self.session.marks.notes
+            notes = self.session.document.marks.notes
             for held in (self._changing, self._answering):
                 if held is not None and not any(each is held for each in notes):
                     self._take_up(None)  # it is gone: what is typed is no change of it any more
@@ -200,7 +200,7 @@ class NotesSection(Section):
 
     def _show(self) -> None:
         empty(self._list)
-        notes, fps = self.session.marks.notes, self.session.take.fps
+        notes, fps = self.session.document.marks.notes, self.session.document.take.fps
         if not any(note is self.chosen for note in notes):
             self.chosen = None
         for number, note in self._shown():
@@ -224,7 +224,7 @@ class NotesSection(Section):
 
     def _shown(self) -> list[tuple[int, Note]]:
         """Return the notes in the list with their numbers: the first ones, or those around the chosen one."""
-        numbered = list(enumerate(self.session.marks.notes, 1))
+        numbered = list(enumerate(self.session.document.marks.notes, 1))
         at = next((number - 1 for number, note in numbered if note is self.chosen), 0)
         first = min(max(0, at - SHOWN // 2), max(0, len(numbered) - SHOWN))
         return numbered[first : first + SHOWN]

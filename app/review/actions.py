@@ -72,7 +72,7 @@ class ReviewActions(QObject):
 
     def review_tool(self) -> None:
         """Show what was changed."""
-        self._session.choose_tool("review")
+        self._session.view.choose_tool("review")
 
     def next_change(self) -> None:
         """Go to the next change."""
@@ -94,9 +94,9 @@ class ReviewActions(QObject):
             self.looped.emit(False)
             return
         self._looping = change.start, change.stop
-        self._session.select(self._looping)
-        if not change.start <= self._session.playhead < change.stop:
-            self._session.move_playhead(change.start)
+        self._session.view.select(self._looping)
+        if not change.start <= self._session.view.playhead < change.stop:
+            self._session.view.move_playhead(change.start)
         self._transport.set_loop(True)
         self._transport.run(self._transport.speed if self._transport.speed > 0 else 1.0)
         self.looped.emit(True)
@@ -143,29 +143,29 @@ class ReviewActions(QObject):
 
     def write_report(self) -> None:
         """Choose a file and write what was changed as a page to read anywhere."""
-        suggested = beside(self._session.path, f"{Path(self._session.name).stem}_review.html")
+        suggested = beside(self._session.document.path, f"{Path(self._session.document.name).stem}_review.html")
         path, _ = ask_where(self._window, "Write a report", suggested, {"Report (*.html)": ".html"})
         if path is not None:
             self.told.emit("Writing the report…")
-            self.reporting.write(self._session.contents(), self._session.name, path)
+            self.reporting.write(self._session.document.contents(), self._session.document.name, path)
 
     # --- within
 
     def _show(self, changes: tuple[Difference, ...]) -> None:
         self.section.show_changes(changes)
-        if self._session.tool == "review":
-            self._session.set_differences(tuple((change.start, change.stop) for change in changes))
+        if self._session.view.tool == "review":
+            self._session.document.set_differences(tuple((change.start, change.stop) for change in changes))
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TOOL:
-            watched = self._session.tool == "review"
+            watched = self._session.view.tool == "review"
             self.comparing.watch(watched)
             if not watched:
-                self._session.set_differences(None)
+                self._session.document.set_differences(None)
         if change & (Change.TAKE | Change.CURVES | Change.READING):
             self.section.show_pair(self.comparing.told)
         if self._looping is not None and change & (Change.TAKE | Change.SELECTION):
-            if self._session.selection != self._looping:
+            if self._session.view.selection != self._looping:
                 self._end_loop()
 
     def _on_transport(self) -> None:
@@ -182,10 +182,10 @@ class ReviewActions(QObject):
         if told is None:
             self.failed.emit("There is no second take to move.", "Compare with another take first.")
         else:
-            self.comparing.shift(float(told["offset_s"]) + frames / self._session.take.fps)
+            self.comparing.shift(float(told["offset_s"]) + frames / self._session.document.take.fps)
 
     def _align(self, edit: Edit) -> None:
-        self._session.undo.push(AlignCommand(self._session, edit))
+        self._session.document.undo.push(AlignCommand(self._session, edit))
 
     def _load_review(self, path: Path) -> None:
         self.review_tool()
@@ -193,14 +193,14 @@ class ReviewActions(QObject):
 
     def _open_pair(self, open_then: Take, found: Pair) -> None:
         """Make the other version one step after the open take, so that undo and hold-to-compare tell the two apart."""
-        if open_then is not self._session.take:
+        if open_then is not self._session.document.take:
             return  # it was edited or closed while the other one was read
         name = found.after.name
 
         def step() -> None:
             self.comparing.remember(found.raw)
-            self._session.undo.push(
-                EditCommand(self._session, found.patch, f"as in {name}", kind=COMPARE, inputs=found.inputs)
+            self._session.document.undo.push(
+                EditCommand.of(self._session.document, found.patch, f"as in {name}", kind=COMPARE, inputs=found.inputs)
             )
             apart = f" {counted(found.apart, 'frame')} of it have no counterpart." if found.apart else ""
             self.told.emit(f"{name} is {found.alignment.sentence}.{apart}")

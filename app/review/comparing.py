@@ -88,26 +88,26 @@ class Comparing(QObject):
 
     def read(self, path: Path) -> None:
         """Read a take to compare the open one with; `paired` follows."""
-        self._work.submit(_Wish(self._session.take, path), "read")
+        self._work.submit(_Wish(self._session.document.take, path), "read")
 
     def remember(self, raw: Take) -> None:
         """Keep the take before as it was, for the pair that is open from now on."""
-        self._raw = self._session.recorded, raw
+        self._raw = self._session.document.recorded, raw
 
     def shift(self, offset_s: float) -> None:
         """Put the take before at another time; `aligned` follows, or `failed` where that take is not there any more."""
         session, told = self._session, self.told
         raw: Take | Path | None = None
-        if self._raw is not None and self._raw[0] is session.recorded:
+        if self._raw is not None and self._raw[0] is session.document.recorded:
             raw = self._raw[1]
-        elif told is not None and session.path is not None:
-            raw = found_again(told, session.path)
+        elif told is not None and session.document.path is not None:
+            raw = found_again(told, session.document.path)
         if raw is None:
             self.failed.emit(
                 "The take before is not where it was, so it cannot be moved.", "Compare the two takes anew."
             )
         else:
-            self._work.submit(_Shift(session.original, session.take, raw, offset_s), "shift")
+            self._work.submit(_Shift(session.document.original, session.document.take, raw, offset_s), "shift")
 
     def close(self) -> None:
         """End the thread."""
@@ -120,17 +120,17 @@ class Comparing(QObject):
 
     def _edits(self) -> list[Edit]:
         """Return the edits in effect."""
-        stack = self._session.undo
+        stack = self._session.document.undo
         found = (getattr(stack.command(index), "edit", None) for index in range(stack.index()))
         return [edit for edit in found if edit is not None]
 
     def _look(self) -> None:
         session = self._session
         edits = tuple(Edited(edit.title, edit.start, edit.stop) for edit in self._edits() if edit.changes_frames)
-        self._work.submit(_Look(session.original, session.take, edits))
+        self._work.submit(_Look(session.document.original, session.document.take, edits))
 
     def _arrived(self, request: object, result: object) -> None:
-        original = self._session.original
+        original = self._session.document.original
         if isinstance(request, _Wish):
             self.paired.emit(request.take, result)
         elif isinstance(request, _Look) and request.original is original:

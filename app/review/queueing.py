@@ -103,13 +103,13 @@ class Queueing(QObject):
         """Know which pair is open, and what its verdict is by now."""
         if not self.queue or not change & (Change.TAKE | Change.MARKS | Change.SAVED):
             return
-        path = self._session.path
+        path = self._session.document.path
         found = next((place for place, entry in enumerate(self.queue) if entry.review == path), None)
         if found != self.current:
             self.current = found
             self.changed.emit()
         if found is not None:
-            verdicts = self._session.marks.verdicts
+            verdicts = self._session.document.marks.verdicts
             verdict: Verdict | None = verdicts[-1] if verdicts and verdicts[-1].judgement else None
             self._put(found, replace(self.queue[found], verdict=verdict))
 

@@ -62,7 +62,7 @@ class ReviewSection(Section):
         self.offset.setSuffix(" frames")
         self.offset.setKeyboardTracking(False)
         self.offset.setToolTip("How much later the take before is than the one after, in frames of the one after")
-        self.offset.valueChanged.connect(lambda frames: self.moved.emit(frames / self.session.take.fps))
+        self.offset.valueChanged.connect(lambda frames: self.moved.emit(frames / self.session.document.take.fps))
         self.column.addWidget(self.alignment)
         self._offset_row = QWidget()
         row = QHBoxLayout(self._offset_row)
@@ -87,7 +87,7 @@ class ReviewSection(Section):
     @property
     def here(self) -> Difference | None:
         """The change at the playhead, or else the first after it, or the last of all."""
-        frame = self.session.playhead
+        frame = self.session.view.playhead
         later = [change for change in self._changes if change.stop > frame]
         return later[0] if later else self._changes[-1] if self._changes else None
 
@@ -102,11 +102,11 @@ class ReviewSection(Section):
         name = plain(str(told.get("name", "")), longest=SENTENCE_LENGTH)
         self.alignment.setText(f"Before: {name}, {alignment.sentence}.{alike}")
         with QSignalBlocker(self.offset):
-            self.offset.setValue(alignment.offset_s * self.session.take.fps)
+            self.offset.setValue(alignment.offset_s * self.session.document.take.fps)
 
     def show_changes(self, changes: tuple[Difference, ...]) -> None:
         """List these changes; the chosen line stays where it still is."""
-        fps = self.session.take.fps
+        fps = self.session.document.take.fps
         self._changes = changes
         row = self.list.currentRow()
         self.list.clear()
@@ -123,14 +123,14 @@ class ReviewSection(Section):
             self.list.setCurrentRow(row)
         differ = sum(change.stop - change.start for change in changes)
         self.summary.setText(
-            f"{counted(len(changes), 'change')} over {differ:,} of {counted(len(self.session.take), 'frame')}."
+            f"{counted(len(changes), 'change')} over {differ:,} of {counted(len(self.session.document.take), 'frame')}."
             if changes
             else "Nothing differs from the recording. Edit the take, or compare it with another one."
         )
 
     def step(self, by: int) -> None:
         """Go to the next change after the playhead, or to the one before it."""
-        here = self.session.playhead
+        here = self.session.view.playhead
         peaks = [change.peak for change in self._changes]
         later = [index for index, peak in enumerate(peaks) if peak > here]
         earlier = [index for index, peak in enumerate(peaks) if peak < here]
@@ -145,8 +145,8 @@ class ReviewSection(Section):
 
     def _go_to(self, item: QListWidgetItem) -> None:
         start, stop, peak = item.data(FRAMES)
-        self.session.select((start, stop))
-        self.session.move_playhead(peak)
+        self.session.view.select((start, stop))
+        self.session.view.move_playhead(peak)
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:

@@ -65,7 +65,7 @@ class VerdictSection(Section):
     @property
     def current(self) -> Verdict | None:
         """The verdict that counts."""
-        verdicts = self.session.marks.verdicts
+        verdicts = self.session.document.marks.verdicts
         return verdicts[-1] if verdicts and verdicts[-1].judgement else None
 
     def ask(self) -> None:
@@ -90,8 +90,10 @@ class VerdictSection(Section):
             return
         title = f"judge: {judgement.lower()}" if judgement else "take back the verdict"
         verdict = Verdict(judgement, why, self.author(), stamp())
-        marks = self.session.marks
-        self.session.undo.push(MarkCommand(self.session, replace(marks, verdicts=(*marks.verdicts, verdict)), title))
+        marks = self.session.document.marks
+        self.session.document.undo.push(
+            MarkCommand.of(self.session.document, replace(marks, verdicts=(*marks.verdicts, verdict)), title)
+        )
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Give up a verdict whose sentence is typed, on Escape."""
@@ -113,12 +115,12 @@ class VerdictSection(Section):
             self.sentence.clearFocus()
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE or (change & Change.MARKS and self._listed is not self.session.marks.verdicts):
+        if change & Change.TAKE or (change & Change.MARKS and self._listed is not self.session.document.marks.verdicts):
             self._show()
 
     def _show(self) -> None:
         self._pending = ""
-        now, verdicts = self.current, self.session.marks.verdicts
+        now, verdicts = self.current, self.session.document.marks.verdicts
         self._listed = verdicts
         self.sentence.setPlaceholderText(WHY)
         self.sentence.setText(plain(now.why) if now is not None else "")

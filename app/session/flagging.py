@@ -46,7 +46,7 @@ class Flagging(QObject):
         super().__init__()
         self._session = session
         self._known: tuple[Flag, ...] | None = None  # what was dismissed among them
-        self._wanted = session.marks.flags, session.marks.dismissals
+        self._wanted = session.document.marks.flags, session.document.marks.dismissals
         self._number = 0
         self._touched: list[tuple[int, Frames]] = []  # by the look that it was first part of; not in `_known` yet
         self._work = LatestWins(_look, name="flags")
@@ -65,14 +65,17 @@ class Flagging(QObject):
         self._work.stop()
 
     def _on_change(self, change: Change) -> None:
-        wanted, self._wanted = self._wanted, (self._session.marks.flags, self._session.marks.dismissals)
+        wanted, self._wanted = (
+            self._wanted,
+            (self._session.document.marks.flags, self._session.document.marks.dismissals),
+        )
         if change & (Change.TAKE | Change.READING) or wanted[0] != self._wanted[0]:
             self._known, self._touched = None, []
-            self._submit((0, len(self._session.take)))
+            self._submit((0, len(self._session.document.take)))
         elif wanted[1] != self._wanted[1]:
             self._show()
         elif change & Change.CURVES:
-            self._submit(self._session.touched)
+            self._submit(self._session.document.touched)
         elif change & (Change.VISEMES | Change.MEDIA):  # what they tell is looked for in the whole take
             self._submit((0, 0))
 
@@ -84,23 +87,23 @@ class Flagging(QObject):
         self._work.submit(
             _Look(
                 self._number,
-                session.take,
-                session.original,
-                session.controls,
-                session.original_controls,
-                session.asked,
-                session.visemes,
-                session.audio,
-                session.offset_s("audio"),
+                session.document.take,
+                session.document.original,
+                session.document.controls,
+                session.document.original_controls,
+                session.document.asked,
+                session.document.visemes,
+                session.document.audio,
+                session.document.offset_s("audio"),
                 self._known,
                 everywhere,
-                session.marks.flags,
+                session.document.marks.flags,
             )
         )
 
     def _arrived(self, look: _Look, flags: tuple[Flag, ...]) -> None:
-        marks = self._session.marks
-        if look.original is not self._session.original or look.settings != marks.flags:
+        marks = self._session.document.marks
+        if look.original is not self._session.document.original or look.settings != marks.flags:
             return  # that take is closed, or something else is looked for by now
         self._known = flags
         self._touched = [entry for entry in self._touched if entry[0] > look.number]
@@ -109,7 +112,7 @@ class Flagging(QObject):
     def _show(self) -> None:
         """Tell the session which findings count, and which were dismissed."""
         if self._known is not None:
-            self._session.set_flags(*parted(self._known, self._session.marks.dismissals))
+            self._session.document.set_flags(*parted(self._known, self._session.document.marks.dismissals))
 
 
 def _look(look: _Look) -> tuple[Flag, ...]:
