@@ -58,7 +58,7 @@ class ReviewActions(QObject):
         # What opens a take or a project in place of what is open, once that is safe; the window says how.
         self.open_take: Callable[[Take, Callable[[], None]], None] = lambda _take, _then: None
         self.load: Callable[[Path], None] = lambda _path: None
-        self.queueing.ready.connect(lambda path: self._load_review(path))
+        self.queueing.ready.connect(self._load_review)
         transport.changed.connect(self._on_transport)
         session.changed.connect(self._on_change)
 
@@ -164,9 +164,9 @@ class ReviewActions(QObject):
                 self._session.document.set_differences(None)
         if change & (Change.TAKE | Change.CURVES | Change.READING):
             self.section.show_pair(self.comparing.told)
-        if self._looping is not None and change & (Change.TAKE | Change.SELECTION):
-            if self._session.view.selection != self._looping:
-                self._end_loop()
+        moved = bool(change & (Change.TAKE | Change.SELECTION)) and self._session.view.selection != self._looping
+        if self._looping is not None and moved:
+            self._end_loop()
 
     def _on_transport(self) -> None:
         if self._looping is not None and not self._transport.playing:
@@ -185,7 +185,7 @@ class ReviewActions(QObject):
             self.comparing.shift(float(told["offset_s"]) + frames / self._session.document.take.fps)
 
     def _align(self, edit: Edit) -> None:
-        self._session.document.undo.push(AlignCommand(self._session, edit))
+        self._session.document.undo.push(AlignCommand.of(self._session.document, edit))
 
     def _load_review(self, path: Path) -> None:
         self.review_tool()

@@ -67,7 +67,7 @@ from app.window.notices import Notices
 from app.window.screen import DESIGNED, stay_on_screen
 from app.window.status import StatusBar
 from engine.assets import DEMO_TAKE
-from engine.formats.importing import imported
+from engine.formats.livelink.importing import imported
 from engine.take import Take
 
 

@@ -1,6 +1,6 @@
 """The `.retake` file: a performance, all that was done to it, and what people noted beside it, in one SQLite database."""
 
-from engine.formats.lock import InUseError
+from engine.formats.base.lock import InUseError
 from engine.project.claim import DisplacedError
 from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from engine.controls import ALL_CONTROLS
-from engine.formats.reading import ReadAs, Reading
+from engine.formats.base.reading import ReadAs, Reading
 from engine.project.reviewing import Note, Verdict, note_of, verdict_from
 from engine.quality.settings import Dismissal, FlagSettings
 from engine.take import SHAPES, Array, Mask, Take

@@ -14,8 +14,8 @@ import numpy as np
 from engine.controls import ALL_CONTROLS, ALL_INDEX
 from engine.errors import EngineError
 from engine.formats.livelink import MAX_COLUMNS
-from engine.formats.livelink_origin import Origin
-from engine.formats.livelink_timecode import DAY_S
+from engine.formats.livelink.origin import Origin
+from engine.formats.livelink.timecode import DAY_S
 from engine.project.blobs import Budget, DamagedError, pack, unpack
 from engine.project.mark_rows import read_marks, read_verdict, write_marks
 from engine.project.origins import read_origin, write_origin

@@ -10,8 +10,8 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 from engine.errors import EngineError, FormatError
-from engine.formats.atomic import replacement, sweep, unwritten
-from engine.formats.content import require_file
+from engine.formats.base.atomic import replacement, sweep, unwritten
+from engine.formats.base.content import require_file
 from engine.project import held, rows, schema, spares
 from engine.project.blobs import Budget
 from engine.project.claim import JOURNALS, Claim, belongs, head_of, is_hot

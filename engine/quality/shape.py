@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.anatomy import EXCLUSIVE, clash
 from engine.character import bundled
-from engine.formats.livelink_sides import EXCHANGED, PULLING, judge
+from engine.formats.livelink.sides import EXCHANGED, PULLING, judge
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen, strengths
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, runs

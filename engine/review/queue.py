@@ -9,7 +9,7 @@ from typing import Any
 
 from engine import project
 from engine.errors import EngineError
-from engine.formats.content import unread
+from engine.formats.base.content import unread
 from engine.project import ENDING, Contents, InUseError, Marks, Project, Verdict, stamp
 from engine.review import pairs
 from engine.review.pairing import alignment_of, contents_of, paired_by, sha256

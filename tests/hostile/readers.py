@@ -55,8 +55,8 @@ def _read_take(path: Path) -> None:
 
 def _markers(*endings: str) -> Callable[[Path], Iterator[tuple[str, bytes]]]:
     def samples(folder: Path) -> Iterator[tuple[str, bytes]]:
-        from engine.formats.capture import Markers
         from engine.formats.markers import write
+        from engine.formats.markers.capture import Markers
 
         positions = np.round(100 * np.random.default_rng(0).normal(size=(6, 4, 3)), 3)
         positions[2, 1] = np.nan
@@ -283,7 +283,7 @@ def _layouts(folder: Path) -> Iterator[tuple[str, bytes]]:
 
 def _read_layout(path: Path) -> None:
     from engine.character import bundled
-    from engine.formats import markers_layout
+    from engine.formats.markers import layout as markers_layout
 
     markers_layout.read(path, head=bundled())
 

@@ -16,7 +16,7 @@ from engine.formats import read_take, write_take
 from engine.inpaint.fill import fill
 from engine.project import Project, Span, replay
 from engine.take import Take, runs
-from tests.engine.formats.livelink_files import Writer, content_of
+from tests.engine.formats.livelink.files import Writer, content_of
 
 GAP, ROWS = (40, 85), (100, 112)  # without a row; rows without a face
 
@@ -77,12 +77,12 @@ def test_a_project_brings_back_what_is_lost_at_every_step(session: Session, tmp_
     contents, state = opened.contents, replay(opened.contents)
     opened.close()
     again = Session(contents.original)
-    steps = tuple(restored(again, contents, state))
+    steps = tuple(restored(again.document, contents, state))
     again.restore(contents, None, steps, state, (session.document.original_controls, session.document.controls))
     for before in reversed(states):
-        np.testing.assert_array_equal(again.take.lost, before.lost)
-        np.testing.assert_array_equal(again.take.weights, before.weights)
-        write_take(again.take, tmp_path / "one.csv")
+        np.testing.assert_array_equal(again.document.take.lost, before.lost)
+        np.testing.assert_array_equal(again.document.take.weights, before.weights)
+        write_take(again.document.take, tmp_path / "one.csv")
         write_take(before, tmp_path / "two.csv")
         assert (tmp_path / "one.csv").read_bytes() == (tmp_path / "two.csv").read_bytes()
-        again.undo.undo()
+        again.document.undo.undo()

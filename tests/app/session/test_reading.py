@@ -13,8 +13,8 @@ from engine import project
 from engine.editing import Patch
 from engine.extended import bundled_face
 from engine.formats import livelink, read_take, write_take
-from engine.formats.livelink_sides import exchange
-from engine.formats.reading import ReadAs, Reading
+from engine.formats.base.reading import ReadAs, Reading
+from engine.formats.livelink.sides import exchange
 from engine.project import Contents, Project, replay
 from engine.take import SHAPES, Take
 
@@ -105,15 +105,15 @@ def test_a_project_remembers_how_it_was_read(take: Take, tmp_path: Path, positio
     came = replay(contents)
     assert came.original is not None
     again = Session(take)
-    measured = tuple(Session(each).controls for each in (came.original, came.take))
-    again.restore(contents, None, tuple(restored(again, contents, came)), came, measured)
+    measured = tuple(Session(each).document.controls for each in (came.original, came.take))
+    again.restore(contents, None, tuple(restored(again.document, contents, came)), came, measured)
     assert state(again) == state(session)
     exported = read_take(tmp_path / "a.retake")
     np.testing.assert_array_equal(exported.weights, session.document.take.weights)
     assert exported.fps == session.document.take.fps
     for index in (0, 5, 3, 1, 4, 2):
         session.document.undo.setIndex(index)
-        again.undo.setIndex(index)
+        again.document.undo.setIndex(index)
         assert state(again) == state(session)
 
 

@@ -13,8 +13,8 @@ from engine import project
 from engine.controls import ALL_CONTROLS
 from engine.errors import EngineError, FormatError
 from engine.formats import livelink
-from engine.formats.livelink_origin import Origin
-from engine.formats.livelink_write import encode
+from engine.formats.livelink.origin import Origin
+from engine.formats.livelink.writer import encode
 from engine.lab.performer import demo
 from engine.project import Contents, Project
 from engine.take import SHAPES, Take
