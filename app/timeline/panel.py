@@ -318,7 +318,9 @@ class Timeline(QWidget):
         if mark is not None:
             return mark.sentence
         if isinstance(near, Note):
-            return f"{near.text}\n{near.author}, {near.time}"
+            return "\n".join(
+                [f"{near.text}\n{near.author}, {near.time}", *(f"↳ {reply.text}" for reply in near.replies)]
+            )
         said = self.visemes.tell(place.x()) if lane == "visemes" and place.x() >= self._gutter else ""
         return said or HINTS.get(lane, HINTS[""])
 

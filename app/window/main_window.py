@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 from app import theme
 from app.actions.edit import EditActions
 from app.actions.file import FileActions
+from app.actions.flags import FlagActions
 from app.actions.marks import MarkActions
 from app.actions.media import MediaActions
 from app.actions.menus import Menus
@@ -120,8 +121,8 @@ class MainWindow(QMainWindow):
         self.live = LiveSection(self.session, self.keeper.folder)
         self.keeper.kept.connect(lambda contents: self.live.settle(contents.original))
         self.attached = MediaSection(self.session)
-        self.notes = NotesSection(self.session)
-        self.flags = FlagsSection(self.session)
+        self.notes, self.flags = NotesSection(self.session), FlagsSection(self.session)
+        self.flagged = FlagActions(self.session, self.flags, self)
         self.marks, self.views = MarkActions(self.session, self.notes, self.spans), ViewActions(self.preview)
         self.retarget, self.review = (
             RetargetActions(self.session, self),
@@ -164,7 +165,7 @@ class MainWindow(QMainWindow):
     # --- building
 
     def _do(self, name: str) -> None:
-        tools = (self.edits, self.time, self.marks, self.views, self.visemes, self.retarget, self.review)
+        tools = (self.edits, self.time, self.marks, self.views, self.visemes, self.flagged, self.retarget, self.review)
         owners = (self, self.files, self.sound, *tools, self.preferences)
         owner = next(each for each in owners if name in type(each).__dict__)
         if name != "cancel":  # which would keep what is half typed
@@ -225,12 +226,7 @@ class MainWindow(QMainWindow):
         self.preview.timed.connect(self.status.timed)
         self._connect_media()
         self._connect_retarget()
-        for signed in (self.notes, self.flags, self.review.verdict):
-            signed.author = lambda: self.settings.author
-        self.notes.drawn = self.preview.drawn
-        self.notes.drawing_wanted.connect(self.preview.draw_on)
-        self.notes.drawing_wanted.connect(self.actions_by_name["draw_mark"].setChecked)
-        self.notes.looked_at.connect(self.preview.look_at)
+        self._connect_review()
         self.preferences.themed.connect(self._wear)
         for clock in (self.timeline, self.status):
             self.preferences.counted.connect(clock.count_in_frames)
@@ -251,9 +247,6 @@ class MainWindow(QMainWindow):
         self.live.face.connect(self.preview.show_live)
         self.preview.live_timed.connect(self.live.on_screen)
         self.live.recorded.connect(self.files.open_recording)
-        self.review.told.connect(self.status.tell)
-        self.review.open_take, self.review.load = self.files.open_then, self.files.load
-        self.review.looped.connect(self.actions_by_name["loop_change"].setChecked)
         self.keeper.saved.connect(self._show_saved)
         self.keeper.mended.connect(self.notices.withdraw)
         self.timeline.visemes.wanted.connect(self._do)
@@ -272,6 +265,18 @@ class MainWindow(QMainWindow):
         self._show_missing()
         self._show_filling()
         self._watch_keys()
+
+    def _connect_review(self) -> None:
+        for signed in (self.notes, self.flags, self.review.verdict):
+            signed.author = lambda: self.settings.author
+        self.notes.drawn = self.preview.drawn
+        self.notes.drawing_wanted.connect(self.preview.draw_on)
+        self.notes.drawing_wanted.connect(self.actions_by_name["draw_mark"].setChecked)
+        self.notes.looked_at.connect(self.preview.look_at)
+        self.flags.failed.connect(self.notices.tell)
+        self.review.told.connect(self.status.tell)
+        self.review.open_take, self.review.load = self.files.open_then, self.files.load
+        self.review.looped.connect(self.actions_by_name["loop_change"].setChecked)
 
     def _watch_keys(self) -> None:
         self._keyboard = Keyboard(self, self.preview)
