@@ -33,7 +33,8 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         self.colour, self.quiet, self.text_colour = QColor("white"), QColor("grey"), QColor("white")
         self.active, self.value, self.range = False, 0.0, (0.0, 1.0)
         self.spare = 0.0  # the part of the lane's height below its range, for what is removed
-        self.removed, self.removed_colour = "", QColor("white")
+        self.removed = self.removed_short = ""  # where there is room for it, and where there is not
+        self.removed_colour = QColor("white")
 
     def paint(self, painter: QPainter, *_: object) -> None:
         """Draw name and numbers."""
@@ -72,7 +73,7 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         if self.removed:
             painter.setPen(self.removed_colour)
             crowded = area.height() < CROWDED_PX and not self._curve.is_weight  # the value stands beside it
-            text = self.removed.removeprefix(REMOVED) if crowded else self.removed
+            text = self.removed_short if crowded else self.removed
             painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, text)
             painter.setPen(self.quiet)
             area.setHeight(area.height() * (1 - self.spare))
@@ -201,7 +202,8 @@ class Lane:
         self._make_room(removed.SHARE)
         full = self.removed.show(taken_off, start, kept=kept, visible=visible, columns=self._columns)
         unit = "" if self.curve.is_weight else f" {self.curve.unit}"
-        self.gutter.removed = f"{REMOVED}±{full:g}{unit}"
+        self.gutter.removed_short = f"±{full:g}{unit}"
+        self.gutter.removed = f"{REMOVED}{self.gutter.removed_short}"
         self.gutter.update()
 
     def difference(self, takes: tuple[Take, Take], measure: Callable[[], Array]) -> Array:
@@ -210,14 +212,15 @@ class Lane:
         if self._difference is None or known[0] is not takes[0] or known[1] is not takes[1]:
             curve = measure()
             least = LEAST_WEIGHT if self.curve.is_weight else LEAST_MM
-            self._difference = takes, curve, full_scale(float(np.abs(curve).max(initial=0.0)), least)
+            largest = float(np.abs(curve).max(initial=0.0))  # less than can be read is none
+            self._difference = takes, curve, full_scale(largest, least) if largest >= least / 2 else 0.0
         return self._difference[1]
 
     def draw_difference(self, visible: tuple[int, int], frame: int) -> None:
         """Draw at the foot of the lane how much its curve differs, and tell how much at a frame."""
         assert self._difference is not None
         _, curve, full = self._difference
-        if not curve.any():
+        if not full:
             self.hide_removed()
             return
         self._make_room(removed.SHARE)
@@ -227,11 +230,12 @@ class Lane:
     def tell_difference(self, frame: int) -> None:
         """Tell by how much the curve differs at a frame."""
         _, curve, full = self._difference or (None, np.zeros(0), 0.0)
-        if not curve.any():
+        if not full:
             return
         unit = "" if self.curve.is_weight else f" {self.curve.unit}"
         digits = 2 if self.curve.is_weight else 1
         self.gutter.removed = f"Δ {curve[frame]:+.{digits}f} of ±{full:g}{unit}"
+        self.gutter.removed_short = f"Δ {curve[frame]:+.{digits}f}"
         self.gutter.removed_colour = self.gutter.quiet
         self.gutter.update()
 

@@ -14,6 +14,7 @@ from app.session import Change, Session
 from app.session.commands import MarkCommand
 from app.widgets.section import Section, quiet
 from app.widgets.text import Label, tip
+from app.widgets.times import signed
 from engine.project import stamp
 from engine.quality import KINDS, Dismissal, Flag, dismissal_of
 from engine.take import timecode
@@ -70,7 +71,7 @@ class FlagsSection(Section):
             self.column.addWidget(widget)
         self._dismiss = self._button("Dismiss…", "dismiss_flag")
         self._restore = self._button("Count it again", "restore_flag")
-        self.side_by_side(self._dismiss, self._restore, self._button("Set…", "flag_settings"))
+        self.side_by_side(self._dismiss, self._restore, self._button("What counts…", "flag_settings"))
         session.changed.connect(self._on_change)
         self._list_all()
 
@@ -163,8 +164,8 @@ class FlagsSection(Section):
         by = dismissal_of(flag, self.session.document.marks.dismissals) if row >= self._open else None
         if by is None:
             return flag.sentence
-        signed = plain(", ".join(part for part in (by.author, by.time) if part))
-        return f"{flag.sentence}\nDismissed: {plain(by.why, longest=SENTENCE_LENGTH)}\n{signed}".strip()
+        why = plain(by.why, longest=SENTENCE_LENGTH)
+        return f"{flag.sentence}\nDismissed: {why}\n{signed(by.author, by.time)}".strip()
 
     def _here(self) -> list[Flag]:
         """Return what there is at the playhead, what begins there and weighs most first."""

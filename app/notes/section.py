@@ -171,6 +171,7 @@ class NotesSection(Section):
             self._put(steps.added(marks, new), "add a note", choose=new)
         self.draw.setChecked(False)
         self._take_up(None)
+        self.entry.clearFocus()  # the keys go to the lanes again
 
     def _change(self, note: Note, text: str, region: str, drawing: Drawing | None) -> None:
         if not text and drawing is None and note.drawing is None:

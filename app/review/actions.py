@@ -49,6 +49,7 @@ class ReviewActions(QObject):
         self.comparing.changed.connect(self._show)
         self.comparing.paired.connect(self._open_pair)
         self.comparing.aligned.connect(self._align)
+        self.comparing.failed.connect(lambda *_: self.section.show_pair(self.comparing.told))
         self.reporting.written.connect(lambda path: self.told.emit(f"The report is in {path.name}."))
         for part in (self.comparing, self.queueing, self.reporting):
             part.failed.connect(self.failed)

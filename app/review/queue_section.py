@@ -14,7 +14,7 @@ from app.widgets.text import tip
 from engine.review.queue import Entry, progress
 from engine.words import NAME_LENGTH, plain
 
-ROW_PX, ROWS = 22, 6
+ROW_PX, ROWS = 18, 6
 GOOD, BAD, OPEN, TROUBLE = "✓", "!", "○", "✕"  # a sign for each state, so that colour is never alone
 
 
@@ -69,7 +69,9 @@ class QueueSection(Section):
                 if entry.trouble:
                     item.setForeground(QBrush(QColor("#E69F00")))
             self.list.setCurrentRow(-1 if current is None else current)
-        self.list.setFixedHeight(ROW_PX * min(ROWS, max(1, len(queue))) + 8)
+        hint = self.list.sizeHintForRow(0) if queue else 0
+        row = hint if hint > 0 else ROW_PX
+        self.list.setFixedHeight(row * min(ROWS, max(1, len(queue))) + 10)
         self.bar.setRange(0, max(1, len(queue)))
         self.bar.setValue(sum(entry.judged for entry in queue))
         self.bar.setFormat(progress(queue))

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QLineEdit, QPushButton
 from app.session import Change, Session
 from app.session.commands import MarkCommand
 from app.widgets.section import Section, quiet
+from app.widgets.times import signed
 from engine.project import Verdict, stamp
 from engine.words import plain
 
@@ -59,6 +60,9 @@ class VerdictSection(Section):
         self.column.addWidget(self.sentence)
         self.column.addWidget(self.history)
         self.column.addWidget(self.taken_back)
+        report = QPushButton("Write a report…")
+        report.clicked.connect(lambda: self.wanted.emit("write_report"))
+        self.column.addWidget(report)
         session.changed.connect(self._on_change)
         self._show()
 
@@ -138,5 +142,5 @@ class VerdictSection(Section):
 def _told(verdict: Verdict) -> str:
     """Return a verdict with who gave it and when."""
     said = plain(verdict.sentence) if verdict.judgement else " ".join(["Taken back.", plain(verdict.why)]).strip()
-    signed = plain(", ".join(part for part in (verdict.author, verdict.time) if part))
-    return f"{said}\n{signed}" if signed else said
+    by = signed(verdict.author, verdict.time)
+    return f"{said}\n{by}" if by else said
