@@ -61,7 +61,9 @@ class FlagsDialog(QDialog):
         foot = QHBoxLayout()
         foot.addWidget(self.usual)
         foot.addStretch(1)
-        foot.addWidget(closing(self))
+        foot.addWidget(close := closing(self))
+        for button in (self.usual, close):
+            button.setAutoDefault(False)  # Enter ends what is typed, and presses nothing
         column = QVBoxLayout(self)
         column.setContentsMargins(2 * GRID, 2 * GRID, 2 * GRID, 2 * GRID)
         column.addWidget(quiet("What is looked for in this project, and from where on it is flagged."))

@@ -49,7 +49,8 @@ class ReviewActions(QObject):
         self.comparing.changed.connect(self._show)
         self.comparing.paired.connect(self._open_pair)
         self.comparing.aligned.connect(self._align)
-        self.comparing.failed.connect(lambda *_: self.section.show_pair(self.comparing.told))
+        for moved in (self.comparing.failed, self.comparing.stepped):
+            moved.connect(self._show_alignment)
         self.reporting.written.connect(lambda path: self.told.emit(f"The report is in {path.name}."))
         for part in (self.comparing, self.queueing, self.reporting):
             part.failed.connect(self.failed)
@@ -163,8 +164,8 @@ class ReviewActions(QObject):
             self.comparing.watch(watched)
             if not watched:
                 self._session.document.set_differences(None)
-        if change & (Change.TAKE | Change.CURVES | Change.READING):
-            self.section.show_pair(self.comparing.told)
+        if change & (Change.TAKE | Change.READING):
+            self._show_alignment()
         moved = bool(change & (Change.TAKE | Change.SELECTION)) and self._session.view.selection != self._looping
         if self._looping is not None and moved:
             self._end_loop()
@@ -172,6 +173,9 @@ class ReviewActions(QObject):
     def _on_transport(self) -> None:
         if self._looping is not None and not self._transport.playing:
             self._end_loop()
+
+    def _show_alignment(self, *_: str) -> None:
+        self.section.show_pair(self.comparing.told)
 
     def _end_loop(self) -> None:
         self._looping = None

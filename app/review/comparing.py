@@ -59,6 +59,7 @@ class Comparing(QObject):
     paired = Signal(object, object)  # the take that was open, a Pair
     aligned = Signal(object)  # the Edit that puts the take before at another time
     failed = Signal(str, str)  # sentence, advice
+    stepped = Signal()  # something was done or undone: how the two takes lie may have changed
 
     def __init__(self, session: Session) -> None:
         super().__init__()
@@ -69,6 +70,7 @@ class Comparing(QObject):
         self._work.done.connect(self._arrived)
         self._work.failed.connect(lambda _request, sentence, advice: self.failed.emit(sentence, advice))
         session.changed.connect(self._on_change)
+        session.document.undo.indexChanged.connect(self._on_step)
 
     @property
     def idle(self) -> bool:
@@ -112,10 +114,19 @@ class Comparing(QObject):
     def close(self) -> None:
         """End the thread."""
         self._session.changed.disconnect(self._on_change)
+        self._session.document.undo.indexChanged.disconnect(self._on_step)
         self._work.stop()
 
     def _on_change(self, change: Change) -> None:
-        if self._watched and change & (Change.TAKE | Change.CURVES):
+        if self._watched and change & Change.TAKE:
+            self._look()
+
+    def _on_step(self, _: int) -> None:
+        """Look again once the undo stack knows of a step: while it is done, the stack does not count it yet."""
+        if self._session.document.opening:
+            return
+        self.stepped.emit()
+        if self._watched:
             self._look()
 
     def _edits(self) -> list[Edit]:

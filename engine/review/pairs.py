@@ -120,7 +120,7 @@ def _open(path: Path, reading: Reading) -> _Opened:
     if path.suffix.lower() != ENDING:
         take = read_take(path, reading=reading)
         return _Opened(take, None, seen_of(take))
-    project = Project.open(path)
+    project = Project.open(path, read_only=True)
     try:
         contents = project.contents
         state = replay(contents)

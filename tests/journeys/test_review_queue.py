@@ -85,8 +85,9 @@ def test_a_queue_of_five_is_judged_by_keyboard_and_taken_up_where_it_was_left(
     assert document.marks.verdict == "Needs work: ease the jaw in" and document.marks.notes[0].frames == 20
     settled(qtbot, window)
 
+    load(qtbot, window, demo.BUNDLED)  # which lets go of the review, as the end of the program does
     again = MainWindow(DEMO, demo.BUNDLED, Settings(tmp_path / "other.ini"), unsaved=tmp_path / "unsaved2")
-    end(qtbot, window)
+    window.hide()
     again.show()
     try:
         qtbot.waitUntil(lambda: again.inference.idle and again.isActiveWindow(), timeout=60_000)
@@ -97,7 +98,6 @@ def test_a_queue_of_five_is_judged_by_keyboard_and_taken_up_where_it_was_left(
         assert told is not None and (told.judgement, told.why, told.author) == ("Needs work", "ease the jaw in", "Ana")
     finally:
         end(qtbot, again)
-    window.closed = True
 
 
 def test_a_pair_that_cannot_be_read_is_a_sentence_and_the_rest_goes_on(
