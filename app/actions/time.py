@@ -38,6 +38,14 @@ class TimeActions(QObject):
         """Play backwards, faster each time."""
         self._transport.faster(-1)
 
+    def play_slowly(self) -> None:
+        """Play forwards at half the speed, slower each time."""
+        self._transport.slower(1)
+
+    def play_backwards_slowly(self) -> None:
+        """Play backwards at half the speed, slower each time."""
+        self._transport.slower(-1)
+
     def stop(self) -> None:
         """Stand still."""
         self._transport.run(0.0)

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
 
 from app.curves.lane import Lane
 from app.curves.peaks import on_screen
 from app.session import Session
+from app.session.document import Document
+from engine.take import Array
 
 
 def take_curves(lanes: Sequence[Lane], session: Session) -> None:
@@ -53,3 +58,29 @@ def draw_removed(lanes: Sequence[Lane], session: Session) -> None:
         rows = slice(draft.start, draft.stop)
         taken_off = session.document.curve(lane.key)[rows] - drafted
         lane.draw_removed(taken_off, draft.start, kept=~session.document.take.lost[rows], visible=visible)
+
+
+def draw_differences(lanes: Sequence[Lane], session: Session) -> None:
+    """Draw how much each curve differs from the take before, while somebody reviews it."""
+    document, view = session.document, session.view
+    if not _reviewed(session):
+        return
+    visible = on_screen(len(document.take), view.range)
+    for lane in lanes:
+        lane.difference((document.take, document.original), partial(_difference, document, lane.key))
+        lane.draw_difference(visible, view.playhead)
+
+
+def tell_differences(lanes: Sequence[Lane], session: Session) -> None:
+    """Tell how much each curve differs at the playhead, while somebody reviews it."""
+    if _reviewed(session):
+        for lane in lanes:
+            lane.tell_difference(session.view.playhead)
+
+
+def _reviewed(session: Session) -> bool:
+    return session.document.differences is not None and session.view.tool == "review"
+
+
+def _difference(document: Document, lane: int) -> Array:
+    return np.asarray(document.curve(lane) - document.original_curve(lane))

@@ -9,7 +9,14 @@ import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSizeF, Qt, Signal
 from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QMouseEvent, QResizeEvent, QWheelEvent
 
-from app.curves.drawing import draw_edits, draw_removed, show_frames, take_curves
+from app.curves.drawing import (
+    draw_differences,
+    draw_edits,
+    draw_removed,
+    show_frames,
+    take_curves,
+    tell_differences,
+)
 from app.curves.lane import Lane
 from app.curves.overlay import FocusRing, Playhead, Underlay
 from app.curves.places import GUTTER_PX, Growth
@@ -24,6 +31,9 @@ from app.widgets.text import Label
 WHEEL_STEP = 1.2
 MIN_LANE_PX = 40
 EXPANDER = 0.75  # the part of the gutter whose click shows or hides the weights below
+
+
+ANY_CURVE = Change.TAKE | Change.LANES | Change.VIEW | Change.CURVES | Change.DRAFT
 
 
 class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
@@ -111,6 +121,8 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
                 kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT | kinds.TOOL,
                 partial(self._draw, draw_removed),
             ),
+            (ANY_CURVE | kinds.TOOL | kinds.REVIEW, partial(self._draw, draw_differences)),
+            (kinds.PLAYHEAD, partial(self._draw, tell_differences)),
             (kinds.TAKE | kinds.LANES | kinds.PLAYHEAD | kinds.CURVES | kinds.DRAFT, self._show_playhead),
             (kinds.LANES | kinds.CURVES | kinds.DRAFT, self.tool.leave),  # what it showed is not there any more
             (kinds.DRAFT, self.tool.refresh),
@@ -128,6 +140,8 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
     def _show_marks(self) -> None:
         self._underlay.selection = self.session.view.selection
         self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.document.open_spans]
+        notes = self.session.document.marks.notes
+        self._underlay.notes = [(float(note.frame), float(note.stop)) for note in notes if not note.resolved]
         self._underlay.update()
         self._playhead.update()
 
@@ -315,7 +329,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         super().resizeEvent(event)
         if event is not None:  # pyqtgraph sends none while it is built
             self._place()
-            for step in (show_frames, draw_edits, draw_removed):
+            for step in (show_frames, draw_edits, draw_removed, draw_differences):
                 self._draw(step)
 
     def focusInEvent(self, event: QFocusEvent) -> None:

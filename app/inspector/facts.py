@@ -21,6 +21,7 @@ LEGEND = "Curves: grey as recorded, dashed as asked."
 class FactsSection(Section):
     """What is asked and reached, and why not more; how much differs from the original."""
 
+    away = frozenset({"review"})
     again = Signal()
     reach = Signal()
 

@@ -10,7 +10,7 @@ from app.playback.clock import Clock, WallClock
 from app.session import Change, Session
 
 TICKS_HZ = 60
-SPEEDS = (1.0, 2.0, 4.0)
+SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0)
 ROUNDING_FRAMES = 0.01  # a clock that counts samples may be half a sample short of the frame it was sent to
 
 
@@ -61,11 +61,19 @@ class Transport(QObject):
 
     def faster(self, direction: int) -> None:
         """Play forwards (1) or backwards (-1); again for twice as fast."""
+        self._step(direction, 1, first=1.0)
+
+    def slower(self, direction: int) -> None:
+        """Play forwards (1) or backwards (-1) at half the speed; again for half of that."""
+        self._step(direction, -1, first=0.5)
+
+    def _step(self, direction: int, by: int, *, first: float) -> None:
+        """Play in a direction at a first speed, or by a step faster or slower where it plays there already."""
         if self.speed * direction <= 0:
-            self.run(SPEEDS[0] * direction)
+            self.run(first * direction)
         else:
-            at = SPEEDS.index(abs(self.speed)) if abs(self.speed) in SPEEDS else 0
-            self.run(SPEEDS[min(at + 1, len(SPEEDS) - 1)] * direction)
+            at = SPEEDS.index(abs(self.speed)) if abs(self.speed) in SPEEDS else SPEEDS.index(1.0)
+            self.run(SPEEDS[min(max(at + by, 0), len(SPEEDS) - 1)] * direction)
 
     def run(self, speed: float) -> None:
         """Play at a speed; 0 stands still."""

@@ -16,9 +16,13 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.preview.camera import Camera
+from app.preview.marking import Marking, Plane, draw_strokes, seen_alike
 from app.preview.overlay import Overlay, draw_scale
 from app.preview.renderer import GROUND, Picture
+from app.preview.wipe import Wipe
 from app.theme import GRID
+from engine.character import Character, bundled
+from engine.project import Drawing
 
 ROUNDED_PX = 4  # a picture of half the resolution is no more than this narrower or wider
 CLICK_PX = 4  # a press that moves no further is a click
@@ -39,6 +43,9 @@ class Face(QWidget):
         self.view = self.pictured = "After"  # what is chosen, and what the picture shows by now
         self.message = "Preparing the preview…"
         self.overlay: Overlay | None = None
+        self.wipe, self.marking = Wipe(), Marking()
+        self.noted: tuple[Drawing, ...] = ()  # of the notes at the playhead
+        self.head: Character | None = None  # that is shown; None is the bundled one
         self._grip: QPointF | None = None
         self._pressed_at = QPointF()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -64,7 +71,10 @@ class Face(QWidget):
         painter.fillRect(self.rect(), QColor(*GROUND))
         if not self.image.isNull():
             painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-            painter.drawImage(self.picture_box(), self.image)
+            if self.pictured == "Wipe":
+                self.wipe.draw(painter, self.image, self.picture_box())
+            else:
+                painter.drawImage(self.picture_box(), self.image)
         painter.setPen(QColor("#e3e6eb"))
         if self.message:
             flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
@@ -78,10 +88,31 @@ class Face(QWidget):
             painter.drawText(middle + GRID, 18, "after")
         elif self.pictured == "Difference":
             draw_scale(painter, self.height())
+        elif self.pictured == "Wipe":
+            self.wipe.draw_line(painter, self.picture_box())
+        if self.overlay is None and self.pictured != "Split" and not self.message:
+            self._draw_marks(painter)
+
+    def _draw_marks(self, painter: QPainter) -> None:
+        """Draw the lines of the notes at the playhead, and those under way."""
+        strokes = [stroke for each in self.noted if seen_alike(each, self.camera) for stroke in each.strokes]
+        if strokes or self.marking.strokes:
+            draw_strokes(painter, self._plane(), [*strokes, *self.marking.strokes])
+
+    def _plane(self) -> Plane:
+        return Plane(self.head or bundled(), self.camera, width=self.width(), height=self.height())
+
+    def draw_on(self, on: bool) -> None:
+        """Let a drag draw on the picture, or turn the face again and forget what was drawn."""
+        self.marking.on = on
+        self.marking.drop()
+        self._show_pointer(QPointF(-1.0, 0.0))
+        self.update()
 
     def picture_box(self) -> QRectF:
         """Return where the picture is: everywhere; one of another format in its own, until the next one comes."""
-        width = self.image.width() * self.height() / max(1, self.image.height())
+        pictures = 2 if self.pictured == "Wipe" else 1
+        width = self.image.width() / pictures * self.height() / max(1, self.image.height())
         if abs(width - self.width()) <= ROUNDED_PX:
             return QRectF(self.rect())
         return QRectF((self.width() - width) / 2, 0.0, width, self.height())
@@ -98,12 +129,30 @@ class Face(QWidget):
         self.resized.emit()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Take hold of the camera."""
+        """Take hold of the camera, or of the line between before and after; or begin to draw."""
         self._grip = self._pressed_at = event.position()
-        self.setCursor(Qt.CursorShape.ClosedHandCursor)
+        x, left = event.position().x(), event.button() == Qt.MouseButton.LeftButton
+        if left and self.pictured == "Wipe" and self.wipe.is_at(x, self.width()):
+            self.wipe.held = True
+        elif left and self.marking.on:
+            self.marking.begin(self._plane().point(x, event.position().y()))
+            self.update()
+        else:
+            self.setCursor(Qt.CursorShape.ClosedHandCursor)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Orbit or pan."""
+        """Orbit or pan; move the line, or draw."""
+        at = event.position()
+        if self.wipe.held:
+            self.wipe.move_to(at.x(), self.width())
+            self.update()
+            return
+        if self.marking.busy:
+            self.marking.go_on(self._plane().point(at.x(), at.y()))
+            self.update()
+            return
+        if self._grip is None:
+            self._show_pointer(at)
         if self._grip is None or (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX:
             return
         moved = event.position() - self._grip
@@ -117,12 +166,23 @@ class Face(QWidget):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Let go; a press that went nowhere is a click."""
         self._grip = None
+        if self.wipe.held or self.marking.busy:
+            self.wipe.held = False
+            self.marking.end()
+            self._show_pointer(event.position())
+            return
         clicked = (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX
         if clicked and event.button() == Qt.MouseButton.RightButton:
             self.menu_wanted.emit(event.globalPosition().toPoint())
         elif clicked:
             self.clicked.emit(event.position())
-        self.setCursor(Qt.CursorShape.OpenHandCursor)
+        self._show_pointer(event.position())
+
+    def _show_pointer(self, at: QPointF) -> None:
+        """Show by the pointer what a press would do."""
+        shape = Qt.CursorShape.CrossCursor if self.marking.on else Qt.CursorShape.OpenHandCursor
+        on_line = self.pictured == "Wipe" and self.wipe.is_at(at.x(), self.width())
+        self.setCursor(Qt.CursorShape.SplitHCursor if on_line else shape)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Frame the whole head from the front."""

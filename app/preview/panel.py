@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QComboBox, QFrame, QHBoxLayout, QSplitter, QToolBu
 from app.preview.camera import PRESETS, Camera, looking
 from app.preview.face import Face
 from app.preview.kept import KeptPictures
+from app.preview.marking import camera_of
 from app.preview.overlay import Overlay
 from app.preview.picking import vertex_under
 from app.preview.renderer import Picture, Shot
@@ -24,10 +25,11 @@ from app.theme import GRID
 from app.widgets.text import Label
 from engine.character import Character, bundled
 from engine.framing import framed
+from engine.project import Drawing
 from engine.take import Array
 from engine.words import SENTENCE_LENGTH, plain
 
-VIEWS = ("Before", "After", "Split", "Difference")
+VIEWS = ("Before", "After", "Wipe", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
 WIDE = 0.6  # of what preview and curves share, for two heads
@@ -74,6 +76,7 @@ class PreviewPanel(QFrame):
         self.drawing.done.connect(self._arrived)
         self.drawing.failed.connect(self._refused)
         self._lay_out()
+        self.face.setMouseTracking(True)
         self.face.camera_moved.connect(lambda _: self.refresh())
         self.face.resized.connect(self.refresh)
         self.face.clicked.connect(self._pick)
@@ -123,6 +126,41 @@ class PreviewPanel(QFrame):
         self.view_changed.emit(name)
         self.refresh(moving=False)  # nothing moves: a coarse picture first would flicker
 
+    def step_wipe(self, by: int) -> None:
+        """Move the line between before and after a step; the view is changed to the one that has it."""
+        if self.face.view != "Wipe":
+            self.show_view("Wipe")
+        self.face.wipe.step(by)
+        self.face.update()
+
+    def draw_on(self, on: bool) -> None:
+        """Let a drag draw on the picture of one face, or turn it again."""
+        if on and self.face.view == "Split":
+            self.show_view("After")
+        self.face.draw_on(on)
+
+    def drawn(self) -> Drawing | None:
+        """Return what was drawn on the picture since it was last asked for."""
+        drawing = self.face.marking.taken(self.face.camera)
+        self.face.update()
+        return drawing
+
+    def look_at(self, drawing: Drawing) -> None:
+        """Look at the face from where a drawing was drawn."""
+        camera = camera_of(drawing)
+        if camera is not None and camera != self.face.camera:
+            self.face.camera = camera
+            self.refresh(moving=False)
+
+    def _show_noted(self) -> None:
+        """Show what was drawn for the notes at the playhead."""
+        frame, notes = self._session.view.playhead, self._session.document.marks.notes
+        here = (note.drawing for note in notes if note.frame <= frame < note.stop and note.drawing is not None)
+        noted = () if self._live is not None else tuple(here)
+        if noted != self.face.noted:
+            self.face.noted = noted
+            self.face.update()
+
     def look_from(self, name: str) -> None:
         """Look at the face from a named place."""
         head = (self._sides[0].head if self._sides else self._character) or bundled()
@@ -133,7 +171,7 @@ class PreviewPanel(QFrame):
 
     def show_character(self, character: Character | None) -> None:
         """Show another head; None is the bundled one."""
-        self._character = character
+        self._character = self.face.head = character
         self.refresh()
 
     def close_renderer(self) -> None:
@@ -147,11 +185,13 @@ class PreviewPanel(QFrame):
             return
         self._coarse = moving and self._spent_ms > BUDGET_MS
         ratio = self.devicePixelRatioF() * (0.5 if self._coarse and self._quick_ms > BUDGET_MS else 1.0)
-        size = (int(self.face.width() * ratio), int(self.face.height() * ratio))
+        pictures = 2 if self._wiped else 1
+        size = (pictures * int(self.face.width() * ratio), int(self.face.height() * ratio))
         self._asked_at = time.perf_counter()
         shot = replace(self._shot(), size=size, smooth_edges=not self._coarse)
         live = self._live is not None
-        wanted = Wanted(shot, self._character, since, live=live, sides=self._sides, view=self.face.view)
+        view = "After" if live or self._sides else self.face.view
+        wanted = Wanted(shot, self._character, since, live=live, sides=self._sides, view=view)
         kept = self._kept.get(wanted)
         self._from_kept = kept is not None
         if kept is not None:
@@ -193,6 +233,11 @@ class PreviewPanel(QFrame):
     def _show_frame(self) -> None:
         self._frame_label.setText("live" if self._live is not None else f"frame {self._session.view.playhead:,}")
 
+    @property
+    def _wiped(self) -> bool:
+        """Whether two whole pictures are wanted, one over the other."""
+        return self.face.view == "Wipe" and self._live is None and not self._sides
+
     def _shot(self) -> Shot:
         session, view = self._session, self.face.view
         after = session.document.frame_weights(session.view.playhead)
@@ -205,7 +250,7 @@ class PreviewPanel(QFrame):
             return Shot(tuple(side.weights for side in self._sides), camera, heads=heads)
         if view == "Before":
             return Shot((before,), camera)
-        if view == "Split":
+        if view in ("Split", "Wipe"):
             return Shot((before, after), camera)
         if view == "Difference":
             return Shot((after,), camera, compared_to=before)
@@ -221,7 +266,7 @@ class PreviewPanel(QFrame):
         spent = (time.perf_counter() - self._asked_at) * 1e3
         if wanted.shot.smooth_edges:
             self._spent_ms = spent
-        elif wanted.shot.size[0] > 0.75 * self.face.width() * self.devicePixelRatioF():
+        elif wanted.shot.size[1] > 0.75 * self.face.height() * self.devicePixelRatioF():
             self._quick_ms = spent
         self._kept.put(wanted, picture)
         if self._from_kept:
@@ -257,7 +302,9 @@ class PreviewPanel(QFrame):
 
     def _on_change(self, change: Change) -> None:
         if change & Change.CHARACTER:
-            self._character = self._session.document.character
+            self._character = self.face.head = self._session.document.character
+        if change & (Change.TAKE | Change.MARKS | Change.PLAYHEAD):
+            self._show_noted()
         if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.CHARACTER):
             session = self._session
             self._show_frame()

@@ -14,6 +14,7 @@ from app.session.document import MEDIA, Document
 from engine.extended import bundled_face
 from engine.formats.base.reading import ReadAs
 from engine.project import (
+    ALIGN,
     MARK,
     READING,
     Contents,
@@ -231,6 +232,25 @@ class ReadingCommand(Step[ReadAs]):
         self._document.read_as(state)
 
 
+class AlignCommand(Step[tuple[Array, Mask]]):
+    """Puts the take before at another time on the clock of the one after: its weights, (frames, 52), and lost frames."""
+
+    @classmethod
+    def of(cls, document: Document, edit: Edit) -> AlignCommand:
+        """Return the step to the rows of an edit of the kind ALIGN."""
+        before = document.original.weights, document.original.lost
+        return cls(document, edit, before=before, after=(edit.weights, edit.still_lost(edit.weights, before[1])))
+
+    @classmethod
+    def restored(cls, document: Document, edit: Edit, before: Before) -> AlignCommand:
+        """Return the step of a stored edit, which replaced the weights and lost frames of `before`."""
+        weights, _, lost = before
+        return cls(document, edit, before=(weights, lost), after=(edit.weights, edit.still_lost(edit.weights, lost)))
+
+    def _put(self, state: tuple[Array, Mask], *, instead_of: tuple[Array, Mask]) -> None:
+        self._document.set_original(*state)
+
+
 def restored(document: Document, contents: Contents, state: Replayed) -> Iterator[QUndoCommand]:
     """Yield the steps of a project's edits, oldest first."""
     for edit, before, change in zip(contents.edits, state.before, state.changes, strict=True):
@@ -240,5 +260,7 @@ def restored(document: Document, contents: Contents, state: Replayed) -> Iterato
             yield MarkCommand.restored(document, edit)
         elif edit.kind == READING:
             yield ReadingCommand.restored(document, edit)
+        elif edit.kind == ALIGN:
+            yield AlignCommand.restored(document, edit, before)
         else:
             yield EditCommand.restored(document, edit, before)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -51,6 +52,7 @@ class Document(QObject):
     video : the file of the reference video, likewise
     sliding : the kind of what is being moved in time, and where it is by now; None between moves
     flags : what was found automatically, by the first frame; None while it is looked for
+    dismissed : findings that somebody does not mind, which are no `flags`
     differences : half-open ranges of frames that differ from the recording; None while nobody looks
     touched : the half-open range of frames that changed last
     character : whose head the weights are for; None for the bundled one
@@ -92,6 +94,7 @@ class Document(QObject):
         self.video: Path | None = None
         self.sliding: tuple[str, float] | None = None
         self.flags: tuple[quality.Flag, ...] | None = None
+        self.dismissed: tuple[quality.Flag, ...] = ()
         self.differences: tuple[tuple[int, int], ...] | None = None
         self.touched = (0, len(take))
         self.character: Character | None = None
@@ -145,6 +148,15 @@ class Document(QObject):
         self._tell(Change.CURVES | Change.DRAFT)
         assert stop <= len(self.take)
 
+    def set_original(self, weights: Array, lost: Mask) -> None:
+        """Put another take before the edits in place, of the same frames; for commands only."""
+        if self.opening:
+            return  # what the steps come to is known
+        self.original = replace(self.original, weights=weights, lost=lost)
+        self.original_controls = _measured(self.original)
+        self.touched = (0, len(self.take))
+        self._tell(Change.READING | Change.CURVES | Change.DRAFT)
+
     def set_marks(self, marks: Marks) -> None:
         """Put other spans, pins, notes, media or another verdict in place."""
         if marks != self.marks and not self.opening:
@@ -179,9 +191,9 @@ class Document(QObject):
         self.draft = draft
         self._tell(Change.DRAFT)
 
-    def set_flags(self, flags: tuple[quality.Flag, ...]) -> None:
-        """Show what was found automatically."""
-        self.flags = flags
+    def set_flags(self, flags: tuple[quality.Flag, ...], dismissed: tuple[quality.Flag, ...] = ()) -> None:
+        """Show what was found automatically, and which findings somebody does not mind."""
+        self.flags, self.dismissed = flags, dismissed
         self._tell(Change.FLAGS)
 
     def set_differences(self, ranges: tuple[tuple[int, int], ...] | None) -> None:

@@ -52,6 +52,7 @@ class SpansSection(Section):
     filling : makes the variants
     """
 
+    away = frozenset({"review"})
     refused = Signal(str, str)
     menu_wanted = Signal(QPoint)  # on the screen, after the span was chosen
 

@@ -152,5 +152,12 @@ def nearest_flag(flags: Sequence[Mark], x: float) -> Mark | None:
 def nearest_mark(marks: Marks, name: str, frame: float, within: float) -> Note | Pin | None:
     """Return the pin or note, by the name of its lane, that lies nearest to a frame and no further than `within` frames."""
     listed: Sequence[Note | Pin] = marks.pins if name == "pins" else marks.notes if name == "notes" else ()
-    near = [mark for mark in listed if abs(mark.frame - frame) <= within]
-    return min(near, key=lambda mark: abs(mark.frame - frame), default=None)
+    near = [mark for mark in listed if _away(mark, frame) <= within]
+    return min(near, key=lambda mark: (_away(mark, frame), abs(mark.frame - frame)), default=None)
+
+
+def _away(mark: Note | Pin, frame: float) -> float:
+    """Return how far a frame is from a pin, or from the frames of a note."""
+    if isinstance(mark, Pin) or frame <= mark.frame:
+        return abs(mark.frame - frame)
+    return max(0.0, frame - (mark.stop - 1))

@@ -274,7 +274,8 @@ class Timeline(QWidget):
         if under.flag is not None:
             return under.flag.sentence
         if isinstance(under.mark, Note):
-            return f"{under.mark.text}\n{under.mark.author}, {under.mark.time}"
+            replies = (f"↳ {reply.text}" for reply in under.mark.replies)
+            return "\n".join([under.mark.text, f"{under.mark.author}, {under.mark.time}", *replies])
         on_visemes = under.lane == "visemes" and place.x() >= self._gutter
         return (self.visemes.tell(place.x()) if on_visemes else "") or HINTS.get(under.lane, HINTS[""])
 

@@ -248,3 +248,5 @@ class MainWindow(WindowParts):
         """Show whether it plays."""
         self.actions_by_name["play"].setChecked(self.transport.playing)
         self.actions_by_name["play"].setIconText("❚❚" if self.transport.playing else "▶")
+        self.status.show_speed(self.transport.speed)
+        self.actions_by_name["loop"].setChecked(self.transport.loop)

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QMainWindow
 from app import theme
 from app.actions.edit import EditActions
 from app.actions.file import FileActions
+from app.actions.flags import FlagActions
 from app.actions.marks import MarkActions
 from app.actions.media import MediaActions
 from app.actions.menus import Menus
@@ -106,11 +107,14 @@ class WindowParts(QMainWindow):
         self.spans = SpansSection(session, self.filling)
         self.live = LiveSection(session, self.keeper.folder)
         self.attached, self.notes, self.flags = MediaSection(session), NotesSection(session), FlagsSection(session)
+        self.flagged = FlagActions(session, self.flags, self)
         self.marks = MarkActions(session, self.notes, self.spans)
-        self.retarget, self.review = RetargetActions(session, self), ReviewActions(session, self)
+        self.retarget, self.review = RetargetActions(session, self), ReviewActions(session, self.transport, self)
+        review = self.review
         sections = (
             *(self.brush, self.value, self.pins, self.clean, self.live, *self.retarget.sections),
-            *(self.smoothing, self.spans, self.review.section, self.facts, self.flags, self.notes, self.attached),
+            *(self.smoothing, self.spans, review.queue, review.section, self.facts, self.flags, self.notes),
+            *(review.verdict, self.attached),
         )
         self.inspector = Inspector(session, sections)
 
@@ -118,7 +122,7 @@ class WindowParts(QMainWindow):
         self.menus = Menus(self, self.settings, self.do, self.files.load)
         self.actions_by_name = self.menus.actions
         self.preferences = SettingsActions(self.settings, self.menus, self.media, self)
-        tools = (self.edits, self.time, self.marks, self.views, self.visemes, self.retarget, self.review)
+        tools = (self.edits, self.time, self.marks, self.views, self.visemes, self.flagged, self.retarget, self.review)
         owners = (self.files, self.sound, *tools, self.preferences, self)
         self._owners = owners_of((entry.name for entry in ACTIONS), owners)
 

@@ -19,7 +19,7 @@ from engine.take import timecode
 from engine.words import counted, plain
 
 LONGEST = 40  # characters of a name in this line
-NAMES = ("take", "rate", "length", "place", "notice", "engine", "sound", "saved", "speed")
+NAMES = ("take", "rate", "length", "place", "pace", "notice", "engine", "sound", "saved", "speed")
 TOLD_MS = 12_000  # how long something is told in passing
 LATENCIES = 20  # that the median is taken of
 
@@ -99,6 +99,12 @@ class StatusBar(QFrame):
         """Tell where the playhead is."""
         frame, fps = self._session.view.playhead, self._session.document.take.fps
         self["place"].setText(f"frame {frame:,}" if self.in_frames else f"{timecode(frame / fps, fps)} · {frame}")
+
+    def show_speed(self, speed: float) -> None:
+        """Tell how fast the take plays where that is not its own speed; 0 where it stands."""
+        names = {0.25: "¼", 0.5: "½"}
+        told = f"{names.get(abs(speed), f'{abs(speed):g}')}× speed"
+        self["pace"].setText("" if speed in (0.0, 1.0) else f"{told}, backwards" if speed < 0 else told)
 
     def count_in_frames(self, on: bool) -> None:
         """Tell time in frames, or in timecode too."""

@@ -17,7 +17,7 @@ Rows = tuple[tuple[Any, Callable[..., object]], ...]  # a bound signal, and what
 
 def connect(window: MainWindow) -> None:
     """Connect the parts of a window."""
-    for rows in (_notices, _opening, _media, _editing, _time, _retarget, _live):
+    for rows in (_notices, _opening, _media, _editing, _time, _retarget, _review, _live):
         for signal, call in rows(window):
             signal.connect(call)
     for clock in (window.timeline, window.status):
@@ -27,15 +27,17 @@ def connect(window: MainWindow) -> None:
     window.edits.put_away = window.notices.put_away
     window.edits.stop_else = window.retarget.retargeting.cancel
     window.time.looping = window.actions_by_name["loop"].isChecked
-    window.notes.author = window.author
-    window.review.open_take = window.files.open_then
+    for signed in (window.notes, window.flags, window.review.verdict):
+        signed.author = window.author
+    window.notes.drawn = window.preview.drawn
+    window.review.open_take, window.review.load = window.files.open_then, window.files.load
 
 
 def _notices(window: MainWindow) -> Rows:
     """What cannot be done is told in a notice, what was done in the status bar."""
-    panels = (window.preview, window.media, window.reference, window.live, window.retarget, window.review)
+    panels = (window.preview, window.media, window.reference, window.live, window.retarget, window.review, window.flags)
     parts = (*panels, window.inference, window.filling, window.visemes, window.timeline.visemes, window.marks)
-    speakers = (window.edits, window.time, window.timeline, window.review)
+    speakers = (window.edits, window.time, window.timeline, window.marks, window.review)
     return (
         *((part.failed, window.notices.tell) for part in parts),
         *((speaker.told, window.status.tell) for speaker in speakers),
@@ -108,6 +110,15 @@ def _retarget(window: MainWindow) -> Rows:
         (window.files.character_chosen, retargeting.choosing.show_on),
         (retargeting.choosing.head_read, window.preview.show_character),
         (retargeting.choosing.told, window.status.hold),
+    )
+
+
+def _review(window: MainWindow) -> Rows:
+    return (
+        (window.notes.drawing_wanted, window.preview.draw_on),
+        (window.notes.drawing_wanted, window.actions_by_name["draw_mark"].setChecked),
+        (window.notes.looked_at, window.preview.look_at),
+        (window.review.looped, window.actions_by_name["loop_change"].setChecked),
     )
 
 

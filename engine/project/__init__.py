@@ -4,6 +4,7 @@ from engine.formats.base.lock import InUseError
 from engine.project.claim import DisplacedError
 from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (
+    ALIGN,
     MARK,
     READING,
     VISEMES,
@@ -20,11 +21,12 @@ from engine.project.records import (
     reading_edit,
 )
 from engine.project.replaying import Before, Replayed, replay
-from engine.project.reviewing import Drawing, Note, Reply, Verdict
+from engine.project.reviewing import Drawing, Note, Reply, Verdict, stamp
 from engine.project.store import ENDING, Project, create, delete, peek, recover
 from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
 __all__ = [
+    "ALIGN",
     "ENDING",
     "MARK",
     "READING",
@@ -61,5 +63,6 @@ __all__ = [
     "reading_edit",
     "recover",
     "replay",
+    "stamp",
     "viseme_edit",
 ]

@@ -16,6 +16,7 @@ from engine.quality.settings import Dismissal, FlagSettings
 from engine.take import SHAPES, Array, Mask, Take
 
 MARK = "mark"  # kind of an edit whose inputs are marks before and after
+ALIGN = "align"  # kind of an edit that puts the take before, not the take itself, at another time
 FILL = "fill"  # kind of an edit that gave every one of its frames motion
 VISEMES = "visemes"  # kind of an edit whose inputs are a step on the visemes lane
 SLOWEST_FPS, FASTEST_FPS = 0.01, 10_000.0
@@ -49,6 +50,11 @@ class Edit:
     def stop(self) -> int:
         """The frame after the last."""
         return self.start + len(self.weights)
+
+    @property
+    def changes_frames(self) -> bool:
+        """Whether it put other rows into the take."""
+        return self.kind != ALIGN and len(self.weights) > 0
 
     def still_lost(self, weights: Array, lost: Mask) -> Mask:
         """Return which of its frames are lost after it, (frames,), where it found these weights and these lost frames."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import Any
 
 Point = tuple[float, float]
@@ -24,7 +25,8 @@ class Drawing:
 
     Attributes
     ----------
-    strokes : the points of each line; x to the right and y down from the picture's middle, in parts of its height
+    strokes : the points of each line, on the plane through the middle of the head that faced the viewer; x to the right
+        and y up from that middle, in parts of the head's height, so that they hold at any zoom and size
     camera : where the face was looked at from: degrees around and above, zoom, pan to the right and up; with two more
         where a part of the face was framed, its width and height. Lengths are in parts of the head's height
     """
@@ -91,6 +93,11 @@ class Verdict:
     def sentence(self) -> str:
         """Judgement and reason as one text."""
         return f"{self.judgement}: {self.why}" if self.why else self.judgement
+
+
+def stamp() -> str:
+    """Return what time it is, ISO 8601 in UTC to the second."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 def verdict_from(sentence: str) -> tuple[Verdict, ...]:

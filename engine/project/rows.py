@@ -19,6 +19,7 @@ from engine.project.blobs import Budget, DamagedError, pack, unpack
 from engine.project.mark_rows import read_marks, read_verdict, write_marks
 from engine.project.origins import read_origin, write_origin
 from engine.project.records import (
+    ALIGN,
     MARK,
     READING,
     Contents,
@@ -129,6 +130,7 @@ def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> It
         if kind == MARK:
             for marks in ("before", "after"):
                 require_marks(_marks_in(made_from, marks), length)
+        require(kind != ALIGN or frames == length, "the take before is not whole")
         if kind == READING:
             _require_readings(made_from)
         asked_rows = _read_asked(asked, _texts(controls, budget), frames, budget)

@@ -19,6 +19,7 @@ from engine.take import SHAPE_INDEX
 from tests.journeys.conftest import load, saved_as, settled
 
 JAW = SHAPE_INDEX["jawOpen"]
+CONTROL, SHIFT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
 
 
 def edited(path: Path, *ranges: tuple[int, int]) -> Path:
@@ -54,8 +55,10 @@ def test_changes_are_gone_through_judged_and_saved_by_keyboard_alone(
     QTest.keyClick(window, Qt.Key.Key_Up, Qt.KeyboardModifier.AltModifier)
     assert 60 <= session.view.playhead < 80
 
-    window.review.section.sentence.setText("the jaw pops")
-    QTest.keyClick(window, Qt.Key.Key_W, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    QTest.keyClick(window, Qt.Key.Key_W, CONTROL | SHIFT)
+    qtbot.waitUntil(window.review.verdict.sentence.hasFocus)
+    QTest.keyClicks(window.review.verdict.sentence, "the jaw pops")
+    QTest.keyClick(window.review.verdict.sentence, Qt.Key.Key_Return)
     assert session.document.marks.verdict == "Needs work: the jaw pops"
     saved_as(qtbot, window, tmp_path / "judged.retake", monkeypatch)
     QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
@@ -70,14 +73,15 @@ def test_a_verdict_is_there_when_the_project_is_opened_again(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     QTest.keyClick(window, Qt.Key.Key_Q)
-    window.review.section.sentence.setText("lovely")
-    QTest.keyClick(window, Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier)
+    QTest.keyClicks(window.review.verdict.sentence, "lovely")
+    QTest.keyClick(window, Qt.Key.Key_A, CONTROL | SHIFT)
     saved_as(qtbot, window, tmp_path / "good.retake", monkeypatch)
     load(qtbot, window, demo.BUNDLED)
     assert window.session.document.marks.verdict == ""
     load(qtbot, window, tmp_path / "good.retake")
-    assert window.review.section.verdict.currentText() == "Approved"
-    assert window.review.section.sentence.text() == "lovely"
+    assert window.session.document.marks.verdict == "Approved: lovely"
+    assert window.review.verdict.approve.isChecked() and window.review.verdict.sentence.text() == "lovely"
+    assert window.review.verdict.history.text().startswith("Approved: lovely\n")
 
 
 def test_a_take_of_another_length_is_put_on_one_clock(
