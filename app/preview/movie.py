@@ -53,11 +53,7 @@ def picture(takes: Sequence[Take], frame: int, *, height: int) -> Picture:
 
 def write_picture(takes: Sequence[Take], frame: int, path: Path, *, height: int) -> None:
     """Write takes side by side at a frame as a PNG."""
-    from PIL import Image
-
-    stored = io.BytesIO()
-    Image.fromarray(picture(takes, frame, height=height)).save(stored, "PNG")
-    write_bytes(path, [stored.getvalue()])
+    write_still(Movie(tuple(takes), height), frame, path)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,12 +85,15 @@ class Movie:
     def pictures(self) -> Iterator[Picture]:
         """Draw frame after frame."""
         for frame in range(*self.range):
-            yield self._picture(frame)
+            yield self.picture_at(frame)
 
-    def _picture(self, frame: int) -> Picture:
+    def picture_at(self, frame: int) -> Picture:
+        """Draw one frame."""
         drawn = picture(self.takes, frame, height=self.height)
         if self.difference:
-            drawn = np.concatenate([drawn, difference(self.takes[0], self.takes[-1], frame, height=self.height)], axis=1)
+            drawn = np.concatenate(
+                [drawn, difference(self.takes[0], self.takes[-1], frame, height=self.height)], axis=1
+            )
         return burnt_in(drawn, self.captions, frame) if self.captions is not None else drawn
 
 
@@ -108,6 +107,15 @@ def write_movie(
 ) -> None:
     """Write takes side by side as an MP4 at the first one's rate, with a codec of `CODECS` or the best there is."""
     write(Movie(tuple(takes), height, frames), path, codec=codec)
+
+
+def write_still(movie: Movie, frame: int, path: Path) -> None:
+    """Write a frame of a movie as a PNG."""
+    from PIL import Image
+
+    stored = io.BytesIO()
+    Image.fromarray(movie.picture_at(frame)).save(stored, "PNG")
+    write_bytes(path, [stored.getvalue()])
 
 
 def write(movie: Movie, path: Path, *, codec: str | None = None, progress: Progress | None = None) -> None:

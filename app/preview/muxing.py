@@ -91,7 +91,9 @@ class _Pixels:
 class _Sound:
     """The sound track: each block is stamped with the number of its first sample."""
 
-    def __init__(self, container: OutputContainer, codec: Codec, sound: Soundtrack, blocks: Iterator[np.ndarray]) -> None:
+    def __init__(
+        self, container: OutputContainer, codec: Codec, sound: Soundtrack, blocks: Iterator[np.ndarray]
+    ) -> None:
         self._layout = "mono" if sound.channels == 1 else "stereo"
         stream = cast("AudioStream", container.add_stream(sound_encoder(codec), rate=SOUND_RATE, layout=self._layout))
         stream.bit_rate = BITS_PER_S * sound.channels
@@ -119,4 +121,3 @@ class _Sound:
         self._number += len(block)
         self._container.mux(self._stream.encode(frame))
         return True
-

@@ -28,7 +28,8 @@ def unclosed(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     blinks = np.flatnonzero((drop > _T.blink_drop_mm) & seen.kept)
     usual = float(np.median(gap[blinks])) if len(blinks) else 0.0
     found = np.zeros(seen.length)
-    open_ = blinks[_level(seen, blinks) & (gap[blinks] > max(_T.unclosed_mm, usual + _T.unlike_mm))]
+    most = drop[blinks] > _T.blink_share * (gap[blinks] + drop[blinks])
+    open_ = blinks[most & _level(seen, blinks) & (gap[blinks] > max(_T.unclosed_mm, usual + _T.unlike_mm))]
     found[open_] = gap[open_]
     for frame in _shut_before(seen):
         near = slice(max(0, frame - 2), frame + 3)

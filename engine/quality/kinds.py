@@ -9,7 +9,6 @@ from engine.quality import edit, eyes, lips, shape, sound, tracker
 from engine.quality.record import Flag
 from engine.quality.seen import Seen
 from engine.quality.tuning import TUNING
-from engine.words import counted
 
 _T = TUNING
 
@@ -52,8 +51,8 @@ TABLE: tuple[Kind, ...] = (
         "frozen",
         "frozen frames",
         tracker.frozen,
-        f"{counted(_T.repeats, 'frame')} like the one before",
-        _beside(1 + _T.repeats),
+        f"frames like the one before for {_T.least_freeze_s:g} s",
+        lambda seen: 1 + tracker.least_repeats(seen.fps),
     ),
     Kind(
         "jitter",
@@ -70,12 +69,25 @@ TABLE: tuple[Kind, ...] = (
         lambda seen: max(2, round(_T.pop_beside_s * seen.fps)) + 2,
     ),
     Kind("head", "the head jumps", tracker.head, f"a turn of {_T.jump_deg:g}° more than beside it", _beside(4)),
-    Kind("impossible", "no face does this", shape.impossible, f"two excluding shapes above {_T.both:g}", _beside(1)),
+    Kind(
+        "impossible",
+        "no face does this",
+        shape.impossible,
+        f"two excluding shapes above {_T.both:g}, rounded and wide lips above {_T.both_wide:g}",
+        _beside(1),
+    ),
+    Kind(
+        "unlike",
+        "unlike recorded faces",
+        shape.unlike,
+        f"a mouth {_T.unlike_times:g} times as far from the mean as any recorded one",
+        _beside(1),
+    ),
     Kind(
         "range",
         "out of range",
         shape.out_of_range,
-        f"a weight below {_T.least_weight:g} or above {_T.most_weight:g}",
+        f"a weight below {_T.least_weight:g} or above {_T.most_weight:g}, of gaze {_T.most_gaze:g}",
         _beside(1),
     ),
     Kind(

@@ -7,16 +7,20 @@ from functools import lru_cache
 
 import numpy as np
 
-from engine.anatomy import EXCLUSIVE, clash
+from engine.anatomy import EXCLUSIVE, Indices, pairs
 from engine.character import bundled
+from engine.errors import AssetError
 from engine.formats.livelink_sides import EXCHANGED, PULLING, judge
+from engine.likeness import recorded
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen, strengths
 from engine.quality.tuning import TUNING
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, runs
+from engine.words import counted
 
 _T = TUNING
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
+_GAZE = np.array([name.startswith("eyeLook") for name in SHAPES])
 _SIDES = ("Left", "Right")
 _TELLING = 20_000  # frames that tell the sides; of a longer take every second one, every third, ...
 _MEETING = (
@@ -27,27 +31,46 @@ _MEETING = (
 
 
 def impossible(seen: Seen, low: int, high: int) -> Iterator[Flag]:
-    """Yield frames with two shapes that exclude each other."""
-    strength = strengths(seen, low, high, reach=0, verdict=lambda weights, _: clash(weights)[0])
-    for start, stop in runs(strength > _T.both):
-        worst = start + int(np.argmax(strength[start:stop]))
-        _, which = clash(seen.weights[low + worst : low + worst + 1])
+    """Yield frames with two shapes that exclude each other, beyond what people were recorded to do."""
+    beyond = strengths(seen, low, high, reach=0, verdict=lambda weights, _: _clash_beyond(weights)[0])
+    for start, stop in runs(beyond > 0):
+        worst = start + int(np.argmax(beyond[start:stop]))
+        _, which = _clash_beyond(seen.weights[low + worst : low + worst + 1])
         first, second, reason = EXCLUSIVE[which[0]]
-        text = f"{first} and {second} are both at {strength[worst]:.2f} or more: {reason}."
-        yield Flag("impossible", low + start, low + stop, weight_of(strength[worst], _T.both, 1.0), text)
+        least = float(_limits()[which[0]])
+        strength = least + beyond[worst]
+        text = f"{first} and {second} are both at {strength:.2f} or more: {reason}."
+        yield Flag("impossible", low + start, low + stop, weight_of(strength, least, 1.0), text)
+
+
+def _limits() -> Array:
+    """Return how strong both shapes of each row of `EXCLUSIVE` may be, (rows,)."""
+    return np.array([_T.both_wide if second == "mouthStretch" else _T.both for _, second, _ in EXCLUSIVE])
+
+
+def _clash_beyond(weights: Array) -> tuple[Array, Indices]:
+    """Return by how much the worst pair of each frame of weights, (frames, 52), is beyond its limit, and its row."""
+    columns, limits = np.ascontiguousarray(weights.T), _limits()
+    worst, which = np.full(len(weights), -np.inf), np.zeros(len(weights), np.int64)
+    for first, second, row in pairs():
+        beyond = np.minimum(columns[first], columns[second]) - limits[row]
+        which[beyond > worst] = row
+        np.maximum(worst, beyond, out=worst)
+    return worst, which
 
 
 def out_of_range(seen: Seen, low: int, high: int) -> Iterator[Flag]:
-    """Yield frames with a weight that is negative or above 1 by more than rounding."""
+    """Yield frames with a weight that is negative or above 1 by more than rounding, or than trackers report of gaze."""
+    most = np.where(_GAZE, _T.most_gaze, _T.most_weight)
 
     def verdict(weights: Array, kept: Mask) -> Array:
-        beyond = np.maximum(_T.least_weight - weights.min(axis=1), weights.max(axis=1) - _T.most_weight)
+        beyond = np.maximum(_T.least_weight - weights.min(axis=1), (weights - most).max(axis=1))
         return np.asarray(np.where(kept, beyond, 0.0))
 
     beyond = strengths(seen, low, high, reach=0, verdict=verdict)
     for start, stop in runs(beyond > 0):
         row = seen.weights[low + start + int(np.argmax(beyond[start:stop]))]
-        worst = int(np.argmax(np.maximum(-row, row - 1.0)))
+        worst = int(np.argmax(np.maximum(_T.least_weight - row, row - most)))
         text = f"{SHAPES[worst]} is at {row[worst]:.2f}; weights go from 0 to 1."
         weight = weight_of(float(beyond[start:stop].max()), 0.0, _T.full_beyond)
         yield Flag("range", low + start, low + stop, weight, text)
@@ -64,6 +87,27 @@ def swapped(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         text = f"Left and right of the mouth look exchanged (correlation {agreement:+.2f})."
         weight = weight_of(-agreement, _T.swapped, _T.full_swapped)
         yield Flag("swapped", 0, seen.length, weight, text)
+
+
+def unlike(seen: Seen, low: int, high: int) -> Iterator[Flag]:
+    """Yield frames on which the mouth is further from the mean face than any mouth that was recorded, by a factor.
+
+    The distance is that of the learned prior (`engine/likeness.py`); where that is missing, nothing is told.
+    """
+    try:
+        known = recorded()
+    except AssetError:
+        return
+    limit = _T.unlike_times * known.furthest
+    distance = np.where(seen.kept[low:high], known.distance(seen.controls[low:high]), 0.0)
+    for start, stop in runs(distance > limit):
+        most = float(distance[start:stop].max())
+        text = (
+            f"The mouth is further from its mean pose than all {counted(len(known.distances), 'recorded face')}, "
+            f"{most / known.furthest:.1f} times as far as the furthest."
+        )
+        weight = weight_of(most / known.furthest, _T.unlike_times, _T.full_unlike_times)
+        yield Flag("unlike", low + start, low + stop, weight, text)
 
 
 def crossing(seen: Seen, low: int, high: int) -> Iterator[Flag]:

@@ -103,6 +103,20 @@ def on_clock_of(after: Take, before: Take, offset_s: float) -> tuple[Array, Mask
     return interpolate(before.weights, at), (at >= 0) & (at <= len(before) - 1)
 
 
+def beside(before: Take, after: Take, *, offset_s: float | None = None) -> Take:
+    """Return `before` as it is shown beside `after`, frame by frame.
+
+    It is put on the clock of `after`, where the two are one performance or an offset is given; before its first frame
+    and after its last it stands still. Two performances begin together.
+    """
+    found = align(before, after, offset_s=offset_s)
+    shift_s = found.offset_s if found.alike or offset_s is not None else 0.0
+    if before.fps == after.fps and shift_s == 0.0:
+        return before
+    weights, common = on_clock_of(after, before, shift_s)
+    return Take(weights, after.fps, lost=~common, name=before.name, start_s=after.start_s)
+
+
 def _overlap_s(before: Take, after: Take, offset_s: float) -> float:
     return min(before.duration_s, after.duration_s + offset_s) - max(0.0, offset_s)
 

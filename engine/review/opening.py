@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
+from engine.errors import EditError
 from engine.formats import audio, livelink, read_take
 from engine.formats.reading import Reading
 from engine.project import ENDING, Marks, Project, replay
 from engine.project.media import find
-from engine.quality import Seen, seen_of, sound_of
+from engine.quality import Seen, Sound, seen_of, sound_of
 from engine.review.changes import Edited
 from engine.review.report import Remark
-from engine.take import Take
+from engine.speech.lane import VisemeLane
+from engine.take import Array, Take
 
 AS_IT_IS = Reading()
 
@@ -26,22 +29,40 @@ class Opened:
     path : of the file
     take : with the edits in effect
     original : what it was made from, where the file tells
-    seen : what is looked at for flags
+    asked : (frames, controls) what was asked of the controls, NaN where nothing was; None where nothing was anywhere
+    visemes : what is said when, where the file tells
     marks : what people put beside it
     edits : those that changed frames, in order
+    sound : what is heard; None where nobody listened
     """
 
     path: Path
     take: Take
-    original: Take | None
-    seen: Seen
-    marks: Marks = Marks()
+    original: Take | None = None
+    asked: Array | None = None
+    visemes: VisemeLane | None = None
+    marks: Marks = field(default_factory=Marks)
     edits: tuple[Edited, ...] = ()
+    sound: Sound | None = None
+
+    @cached_property
+    def seen(self) -> Seen:
+        """What is looked at for flags."""
+        return seen_of(self.take, self.original, self.asked, self.visemes, sound=self.sound)
 
     @property
     def remarks(self) -> tuple[Remark, ...]:
         """The notes."""
         return tuple(Remark(note.frame, note.author, note.time, note.text) for note in self.marks.notes)
+
+    def require_original(self) -> Take:
+        """Return what the take was made from; raises `EditError` where the file does not tell."""
+        if self.original is None:
+            raise EditError(
+                f"{self.path.name} does not hold what it was made from.",
+                "Name the take before its edits, then the one after.",
+            )
+        return self.original
 
     def sound_file(self) -> tuple[Path, float] | None:
         """Return the recording that goes with it and the time of the take at which that begins; None without one.
@@ -61,8 +82,7 @@ class Opened:
         if found is None:
             return self
         path, offset_s = found
-        heard = sound_of(audio.read(path), fps=self.take.fps, offset_s=offset_s)
-        return replace(self, seen=replace(self.seen, sound=heard))
+        return replace(self, sound=sound_of(audio.read(path), fps=self.take.fps, offset_s=offset_s))
 
 
 def opened(path: Path, reading: Reading = AS_IT_IS) -> Opened:
@@ -71,17 +91,20 @@ def opened(path: Path, reading: Reading = AS_IT_IS) -> Opened:
     Raises `EngineError` where it cannot be read.
     """
     if path.suffix.lower() != ENDING:
-        take = read_take(path, reading=reading)
-        return Opened(path, take, None, seen_of(take))
+        return Opened(path, read_take(path, reading=reading))
     project = Project.open(path, read_only=True)
     try:
         contents = project.contents
     finally:
         project.close()
     state = replay(contents)
-    take = livelink.reread(state.take, reading, keep=True)
-    original = livelink.reread(state.original or contents.original, reading, keep=True)
     in_effect = contents.edits[: contents.position]
-    edits = tuple(Edited(edit.title, edit.start, edit.stop) for edit in in_effect if len(edit.weights))
-    seen = seen_of(take, original, state.asked, state.visemes)
-    return Opened(path, take, original, seen, contents.marks, edits)
+    return Opened(
+        path,
+        livelink.reread(state.take, reading, keep=True),
+        livelink.reread(state.original or contents.original, reading, keep=True),
+        state.asked,
+        state.visemes,
+        contents.marks,
+        tuple(Edited(edit.title, edit.start, edit.stop) for edit in in_effect if len(edit.weights)),
+    )

@@ -30,22 +30,16 @@ def review(before: Path | None, after: Path, *, offset_s: float | None = None, r
     else:
         first = opened(before, reading)
         compared, seen = compare(first.take, second.take, offset_s=offset_s, edits=second.edits), first.seen
-    return Review(
-        compared, flags_of(seen), flags_of(second.seen), second.marks.verdict, second.remarks, second.edits
-    )
+    return Review(compared, flags_of(seen), flags_of(second.seen), second.marks.verdict, second.remarks, second.edits)
 
 
 def _against_original(second: Opened, offset_s: float | None) -> tuple[Comparison, Seen]:
     """Return a project's take beside what it was made from, which begins with it, and what is looked at there."""
-    if second.original is None:
-        raise EditError(
-            f"{second.path.name} does not hold what it was made from.",
-            "Name the take before its edits, then the one after.",
-        )
-    compared = compare(second.original, second.take, offset_s=offset_s or 0.0, edits=second.edits)
+    original = second.require_original()
+    compared = compare(original, second.take, offset_s=offset_s or 0.0, edits=second.edits)
     if not offset_s:
         compared = replace(compared, alignment=replace(compared.alignment, by="start"))
-    return compared, seen_of(second.original)
+    return compared, seen_of(original)
 
 
 def flags(path: Path, reading: Reading = AS_IT_IS, *, sound: bool = False) -> tuple[Flag, ...]:

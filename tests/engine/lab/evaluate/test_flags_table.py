@@ -29,7 +29,7 @@ def test_every_kind_has_a_plant() -> None:
 
 
 @pytest.mark.parametrize(
-    "kind", ["spike", "frozen", "jitter", "pop", "head", "range", "close", "seam", "lost", "short"]
+    "kind", ["spike", "frozen", "jitter", "pop", "head", "range", "close", "seam", "lost", "short", "unlike"]
 )
 def test_a_fault_is_planted_where_it_is_told_and_changes_nothing_elsewhere(kind: str) -> None:
     rng = np.random.default_rng(SEED)
@@ -42,7 +42,8 @@ def test_a_fault_is_planted_where_it_is_told_and_changes_nothing_elsewhere(kind:
         if kind != "seam":  # which also lays an eased edit beside the hard one
             assert (plant.seen.weights[away] == seen.weights[: plant.seen.length][away]).all()
         found += any(flag.kind == kind and flag.stop > plant.start - 3 for flag in flags_of(plant.seen))
-    assert found > 0.6 * len(plants) > 0
+    least = 0.4 if kind == "unlike" else 0.6  # the demo says little that can be overdone
+    assert found > least * len(plants) > 0
 
 
 def test_a_flag_is_found_right_or_wrong_by_where_it_lies(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -65,7 +66,9 @@ def test_takes_without_plants_tell_false_flags_a_minute() -> None:
     weights = spoilt.take.weights.copy()
     weights[1000, 17] += 2.0
     spoilt = flags.Source("spoilt", spoilt.take.with_weights(weights), spoilt.rotations, spoilt.sound)
-    first, second, both = flags._unplanted([clean, spoilt])
+    found = flags._unplanted([clean, spoilt])
+    first, second, both = found.rows
     assert second["flags"] > first["flags"] and both["flags"] == first["flags"] + second["flags"]
     assert both["flags_per_min_low"] < both["flags_per_min"] < both["flags_per_min_high"]
-    assert "range 1" in second["kinds"] and "counts" not in both
+    assert "range 1" in second["kinds"] and found.counts["range"] == 1
+    assert both["flags"] == found.counts.total()
