@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from app.preview.captions import Captions
     from app.preview.movie import Movie
     from app.preview.soundtrack import Soundtrack
-    from engine.formats.reading import Reading
+    from engine.formats.base.reading import Reading
     from engine.review.opening import Opened
     from engine.take import Take
 
@@ -54,7 +54,7 @@ def render(
 ) -> None:
     """Draw a take: a PNG of one frame, or an MP4 of all of it with its sound."""
     from app.preview import movie
-    from engine.formats.reading import Reading
+    from engine.formats.base.reading import Reading
 
     shown, noted = _shown(take, compare, Reading(fps, sides_of(sides)), before_edits=before_edits, offset_s=offset)
     if difference and len(shown) == 1:

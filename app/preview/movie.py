@@ -16,7 +16,7 @@ from app.preview.muxing import Progress, write_mp4
 from app.preview.renderer import Picture, Renderer, Shot
 from app.preview.soundtrack import Soundtrack
 from engine.character import Character, bundled
-from engine.formats.atomic import write_bytes
+from engine.formats.base.atomic import write_bytes
 from engine.review.counting import rate_of
 from engine.take import Array, Take
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from app.preview.encoding import Codec, sound_encoder
 from app.preview.renderer import Picture
-from engine.formats.atomic import write_bytes
+from engine.formats.base.atomic import write_bytes
 
 if TYPE_CHECKING:
     from av.audio.stream import AudioStream

@@ -10,15 +10,14 @@ import numpy as np
 from engine.anatomy import EXCLUSIVE, Indices, pairs
 from engine.character import bundled
 from engine.errors import AssetError
-from engine.formats.livelink_sides import EXCHANGED, PULLING, judge
+from engine.formats.livelink.sides import EXCHANGED, PULLING, judge
 from engine.likeness import recorded
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen, strengths
-from engine.quality.tuning import TUNING
+from engine.quality.tuning import Tuning
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, runs
 from engine.words import counted
 
-_T = TUNING
 _JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 _GAZE = np.array([name.startswith("eyeLook") for name in SHAPES])
 _SIDES = ("Left", "Right")
@@ -32,25 +31,27 @@ _MEETING = (
 
 def impossible(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames with two shapes that exclude each other, beyond what people were recorded to do."""
-    beyond = strengths(seen, low, high, reach=0, verdict=lambda weights, _: _clash_beyond(weights)[0])
+    limits = _limits(seen.tuning)
+    beyond = strengths(seen, low, high, reach=0, verdict=lambda weights, _: _clash_beyond(weights, limits)[0])
     for start, stop in runs(beyond > 0):
         worst = start + int(np.argmax(beyond[start:stop]))
-        _, which = _clash_beyond(seen.weights[low + worst : low + worst + 1])
+        _, which = _clash_beyond(seen.weights[low + worst : low + worst + 1], limits)
         first, second, reason = EXCLUSIVE[which[0]]
-        least = float(_limits()[which[0]])
+        least = float(limits[which[0]])
         strength = least + beyond[worst]
         text = f"{first} and {second} are both at {strength:.2f} or more: {reason}."
         yield Flag("impossible", low + start, low + stop, weight_of(strength, least, 1.0), text)
 
 
-def _limits() -> Array:
+def _limits(tuning: Tuning) -> Array:
     """Return how strong both shapes of each row of `EXCLUSIVE` may be, (rows,)."""
-    return np.array([_T.both_wide if second == "mouthStretch" else _T.both for _, second, _ in EXCLUSIVE])
+    wide = max(tuning.both, tuning.both_wide)
+    return np.array([wide if second == "mouthStretch" else tuning.both for _, second, _ in EXCLUSIVE])
 
 
-def _clash_beyond(weights: Array) -> tuple[Array, Indices]:
+def _clash_beyond(weights: Array, limits: Array) -> tuple[Array, Indices]:
     """Return by how much the worst pair of each frame of weights, (frames, 52), is beyond its limit, and its row."""
-    columns, limits = np.ascontiguousarray(weights.T), _limits()
+    columns = np.ascontiguousarray(weights.T)
     worst, which = np.full(len(weights), -np.inf), np.zeros(len(weights), np.int64)
     for first, second, row in pairs():
         beyond = np.minimum(columns[first], columns[second]) - limits[row]
@@ -61,31 +62,31 @@ def _clash_beyond(weights: Array) -> tuple[Array, Indices]:
 
 def out_of_range(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames with a weight that is negative or above 1 by more than rounding, or than trackers report of gaze."""
-    most = np.where(_GAZE, _T.most_gaze, _T.most_weight)
+    most = np.where(_GAZE, max(seen.tuning.most_weight, seen.tuning.most_gaze), seen.tuning.most_weight)
 
     def verdict(weights: Array, kept: Mask) -> Array:
-        beyond = np.maximum(_T.least_weight - weights.min(axis=1), (weights - most).max(axis=1))
+        beyond = np.maximum(seen.tuning.least_weight - weights.min(axis=1), (weights - most).max(axis=1))
         return np.asarray(np.where(kept, beyond, 0.0))
 
     beyond = strengths(seen, low, high, reach=0, verdict=verdict)
     for start, stop in runs(beyond > 0):
         row = seen.weights[low + start + int(np.argmax(beyond[start:stop]))]
-        worst = int(np.argmax(np.maximum(_T.least_weight - row, row - most)))
+        worst = int(np.argmax(np.maximum(seen.tuning.least_weight - row, row - most)))
         text = f"{SHAPES[worst]} is at {row[worst]:.2f}; weights go from 0 to 1."
-        weight = weight_of(float(beyond[start:stop].max()), 0.0, _T.full_beyond)
+        weight = weight_of(float(beyond[start:stop].max()), 0.0, seen.tuning.full_beyond)
         yield Flag("range", low + start, low + stop, weight, text)
 
 
 def swapped(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield the whole take where the mouth goes to one side and the other side's muscles pull."""
-    if seen.length < _T.swapped_frames:
+    if seen.length < seen.tuning.swapped_frames:
         return
     names = [name for pair in EXCHANGED for name in pair] + [f"{shape}{side}" for shape in PULLING for side in _SIDES]
     part = slice(None, None, 1 + seen.length // _TELLING)
     agreement = judge({name: seen.weights[part, SHAPE_INDEX[name]] for name in names}, seen.kept[part]).agreement
-    if agreement is not None and -agreement > _T.swapped:
+    if agreement is not None and -agreement > seen.tuning.swapped:
         text = f"Left and right of the mouth look exchanged (correlation {agreement:+.2f})."
-        weight = weight_of(-agreement, _T.swapped, _T.full_swapped)
+        weight = weight_of(-agreement, seen.tuning.swapped, seen.tuning.full_swapped)
         yield Flag("swapped", 0, seen.length, weight, text)
 
 
@@ -98,7 +99,7 @@ def unlike(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         known = recorded()
     except AssetError:
         return
-    limit = _T.unlike_times * known.furthest
+    limit = seen.tuning.unlike_times * known.furthest
     distance = np.where(seen.kept[low:high], known.distance(seen.controls[low:high]), 0.0)
     for start, stop in runs(distance > limit):
         most = float(distance[start:stop].max())
@@ -106,13 +107,13 @@ def unlike(seen: Seen, low: int, high: int) -> Iterator[Flag]:
             f"The mouth is further from its mean pose than all {counted(len(known.distances), 'recorded face')}, "
             f"{most / known.furthest:.1f} times as far as the furthest."
         )
-        weight = weight_of(most / known.furthest, _T.unlike_times, _T.full_unlike_times)
+        weight = weight_of(most / known.furthest, seen.tuning.unlike_times, seen.tuning.full_unlike_times)
         yield Flag("unlike", low + start, low + stop, weight, text)
 
 
 def crossing(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames on which the lips or the lids of the bundled head pass through each other."""
-    for name, through_mm in (("lip", _T.through_lips_mm), ("lid", _T.through_lids_mm)):
+    for name, through_mm in (("lip", seen.tuning.through_lips_mm), ("lid", seen.tuning.through_lids_mm)):
 
         def verdict(weights: Array, kept: Mask, name: str = name) -> Array:
             return np.asarray(np.where(kept, crossed_mm(weights, name), 0.0))
@@ -121,7 +122,9 @@ def crossing(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         for start, stop in runs(depth > through_mm):
             most = float(depth[start:stop].max())
             text = f"The {name}s pass through each other by {most:.1f} mm on the head."
-            yield Flag("through", low + start, low + stop, weight_of(most, through_mm, _T.full_through_mm), text)
+            yield Flag(
+                "through", low + start, low + stop, weight_of(most, through_mm, seen.tuning.full_through_mm), text
+            )
 
 
 def crossed_mm(weights: Array, name: str) -> Array:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from engine.errors import EditError
 from engine.formats import audio, livelink, read_take
-from engine.formats.reading import Reading
+from engine.formats.base.reading import Reading
 from engine.project import ENDING, Marks, Project, replay
 from engine.project.media import find
 from engine.quality import Seen, Sound, seen_of, sound_of

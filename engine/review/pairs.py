@@ -7,7 +7,7 @@ from pathlib import Path
 
 from engine.errors import EditError
 from engine.formats import FORMATS
-from engine.formats.reading import Reading
+from engine.formats.base.reading import Reading
 from engine.project import ENDING
 from engine.quality import Flag, Seen, flags_of, seen_of
 from engine.review.changes import Comparison, compare

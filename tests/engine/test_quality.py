@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from engine.anatomy import EXCLUSIVE, pairs
 from engine.controls import CONTROL_INDEX
-from engine.extended import bundled_face
 from engine.errors import AssetError
+from engine.extended import bundled_face
 from engine.formats import read_take
 from engine.formats.audio import Audio
-from engine.formats.livelink_sides import exchange
+from engine.formats.livelink.sides import exchange
 from engine.lab.performer import demo
 from engine.quality import (
     CLOSED_MM,

@@ -14,7 +14,8 @@ from engine.extended import bundled_face
 from engine.formats import audio
 from engine.lab.corpus import TEST, data_folder, load_takes
 from engine.lab.evaluate import Report, Row
-from engine.lab.evaluate.flags_plants import PLANTS, Planted
+from engine.lab.evaluate.flags_planting import Planted
+from engine.lab.evaluate.flags_plants import PLANTS
 from engine.quality import KINDS, TABLE, Flag, Seen, Sound, flags_of, sound_of
 from engine.take import Take
 

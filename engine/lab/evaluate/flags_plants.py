@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.anatomy import pairs
 from engine.controls import CONTROL_INDEX
-from engine.formats.livelink_sides import exchange, judge
+from engine.formats.livelink.sides import exchange, judge
 from engine.lab.evaluate import flags_plants_mouth as plants_mouth
 from engine.lab.evaluate.flags_planting import EDGE_S, Plant, Planted, free_range, with_rows
 from engine.quality import TUNING, Seen

@@ -5,7 +5,8 @@ import pytest
 
 from engine.formats import read_take
 from engine.lab.evaluate import flags
-from engine.lab.evaluate.flags_plants import PLANTS, Planted
+from engine.lab.evaluate.flags_planting import Planted
+from engine.lab.evaluate.flags_plants import PLANTS
 from engine.lab.performer import demo
 from engine.quality import KINDS, Flag, flags_of
 from engine.quality.seen import Sound
