@@ -106,7 +106,9 @@ def _captions(shown: tuple[Take, ...], noted: Opened, *, difference: bool) -> Ca
     if difference:
         names.append(f"Difference, white is {HEAT_FULL_MM:g} mm or more")
     counting = counting_of(noted.take.fps)
-    notes = [Said(note.frame, note.frame + 1, f"{note.author}: {note.text}") for note in noted.remarks]
+    notes = [
+        Said(note.frame, note.stop, f"{note.author}: {note.text}") for note in noted.marks.notes if not note.resolved
+    ]
     first = counting.count_at(noted.take.start_s)
     return Captions(tuple(names), counting, first, tuple(sorted(notes, key=lambda note: note.start)))
 

@@ -17,10 +17,13 @@ from app.preview.renderer import Picture, Renderer, Shot
 from app.preview.soundtrack import Soundtrack
 from engine.character import Character, bundled
 from engine.formats.base.atomic import write_bytes
+from engine.project import Drawing
 from engine.review.counting import rate_of
 from engine.take import Array, Take
 
 ASPECT = 0.8  # width / height of one head
+DEFAULT_CAMERA = (0.0, 4.0, 1.0, 0.0, 0.0)  # around, above, zoom, pan: where a drawing does not tell
+PEN, PEN_PX = (240, 228, 66), 3
 
 
 class _Studio:
@@ -140,6 +143,27 @@ def difference(before: Take, after: Take, frame: int, *, height: int) -> Picture
     even = 2 * (height // 2)
     size = 2 * round(even * ASPECT / 2), even
     return _renderer().draw(Shot((second,), Camera(), size, compared_to=first))
+
+
+def drawn_on(face: Array, drawing: Drawing, *, height: int) -> bytes:
+    """Return a PNG of a face, weights (52,), with the lines that somebody drew on it, seen from where they did."""
+    from PIL import Image, ImageDraw
+
+    around, above, zoom, right, up, *frame = (*drawing.camera, *DEFAULT_CAMERA[len(drawing.camera) :])
+    camera = Camera(around, above, zoom, (right, up), (frame[0], frame[1]) if len(frame) == 2 else None)
+    image = Image.fromarray(_renderer().draw(Shot((face,), camera, (2 * round(height * ASPECT / 2), height))))
+    pen = ImageDraw.Draw(image)
+    for stroke in drawing.strokes:
+        points = [(image.width / 2 + x * height, height / 2 + y * height) for x, y in stroke]
+        if len(points) > 1:
+            pen.line(points, fill=PEN, width=PEN_PX, joint="curve")
+        else:
+            pen.ellipse(
+                [(x - PEN_PX, y - PEN_PX) for x, y in points] + [(x + PEN_PX, y + PEN_PX) for x, y in points], PEN
+            )
+    stored = io.BytesIO()
+    image.save(stored, "PNG", optimize=True)
+    return stored.getvalue()
 
 
 def comparison(before: Array, after: Array, *, height: int) -> bytes:

@@ -110,6 +110,7 @@ TABLE: tuple[Kind, ...] = (
         shape.unlike,
         f"a mouth {_T.unlike_times:g} times as far from the mean as any recorded one",
         _beside(1),
+        on=False,  # of people whom the prior does not know it flags what is theirs: 1.2 false ones a minute
         setting=Threshold("unlike_times", "times as far", 0.5, 2.4),
     ),
     Kind(

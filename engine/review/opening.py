@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -11,9 +12,8 @@ from engine.formats import audio, livelink, read_take
 from engine.formats.base.reading import Reading
 from engine.project import ENDING, Marks, Project, replay
 from engine.project.media import find
-from engine.quality import Seen, Sound, seen_of, sound_of
+from engine.quality import Flag, Seen, Sound, flags_of, seen_of, sound_of
 from engine.review.changes import Edited
-from engine.review.report import Remark
 from engine.speech.lane import VisemeLane
 from engine.take import Array, Take
 
@@ -50,10 +50,12 @@ class Opened:
         """What is looked at for flags."""
         return seen_of(self.take, self.original, self.asked, self.visemes, sound=self.sound)
 
-    @property
-    def remarks(self) -> tuple[Remark, ...]:
-        """The notes."""
-        return tuple(Remark(note.frame, note.author, note.time, note.text) for note in self.marks.notes)
+    def flags(self, also: Iterable[str] = ()) -> tuple[Flag, ...]:
+        """Return every finding that the file's settings count, and those of the kinds `also`; dismissed ones too."""
+        settings = self.marks.flags
+        for kind in also:
+            settings = settings.with_count(kind, on=True)
+        return flags_of(self.seen, settings)
 
     def require_original(self) -> Take:
         """Return what the take was made from; raises `EditError` where the file does not tell."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from engine.errors import EditError
 from engine.formats import FORMATS
 from engine.formats.base.reading import Reading
 from engine.project import ENDING
-from engine.quality import Flag, Seen, flags_of, seen_of
+from engine.quality import Dismissal, Flag, dismissal_of, flags_of, parted, seen_of
 from engine.review.changes import Comparison, compare
 from engine.review.opening import AS_IT_IS, Opened, opened
 from engine.review.report import Review
@@ -26,29 +27,50 @@ def review(before: Path | None, after: Path, *, offset_s: float | None = None, r
     """
     second = opened(after, reading)
     if before is None:
-        compared, seen = _against_original(second, offset_s)
+        compared, earlier = _against_original(second, offset_s)
     else:
         first = opened(before, reading)
-        compared, seen = compare(first.take, second.take, offset_s=offset_s, edits=second.edits), first.seen
-    return Review(compared, flags_of(seen), flags_of(second.seen), second.marks.verdict, second.remarks, second.edits)
+        compared = compare(first.take, second.take, offset_s=offset_s, edits=second.edits)
+        earlier, _ = parted(first.flags(), first.marks.dismissals)
+    counting, dismissed = parted(second.flags(), second.marks.dismissals)
+    return Review(
+        compared,
+        earlier,
+        counting,
+        second.marks.verdicts,
+        second.marks.notes,
+        second.edits,
+        tuple((flag, _who(flag, second)) for flag in dismissed),
+    )
 
 
-def _against_original(second: Opened, offset_s: float | None) -> tuple[Comparison, Seen]:
-    """Return a project's take beside what it was made from, which begins with it, and what is looked at there."""
+def _against_original(second: Opened, offset_s: float | None) -> tuple[Comparison, tuple[Flag, ...]]:
+    """Return a project's take beside what it was made from, which begins with it, and what is found there."""
     original = second.require_original()
     compared = compare(original, second.take, offset_s=offset_s or 0.0, edits=second.edits)
     if not offset_s:
         compared = replace(compared, alignment=replace(compared.alignment, by="start"))
-    return compared, seen_of(original)
+    return compared, flags_of(seen_of(original), second.marks.flags)
 
 
-def flags(path: Path, reading: Reading = AS_IT_IS, *, sound: bool = False) -> tuple[Flag, ...]:
+def _who(flag: Flag, opened_: Opened) -> Dismissal:
+    """Return who dismissed a flag that was dismissed."""
+    found = dismissal_of(flag, opened_.marks.dismissals)
+    assert found is not None
+    return found
+
+
+def flags(
+    path: Path, reading: Reading = AS_IT_IS, *, sound: bool = False, also: Iterable[str] = ()
+) -> tuple[Flag, ...]:
     """Return the automatic findings of a take, or of a project with its edits; with `sound`, of the one beside it too.
 
-    Raises `EngineError` where the take or that sound cannot be read.
+    Kinds that are not looked for unless somebody says so are, where they are named in `also`. Findings that somebody
+    dismissed are left out. Raises `EngineError` where the take or that sound cannot be read.
     """
     found = opened(path, reading)
-    return flags_of((found.with_sound() if sound else found).seen)
+    counting, _ = parted((found.with_sound() if sound else found).flags(also), found.marks.dismissals)
+    return counting
 
 
 def pairs(folder: Path) -> list[tuple[Path, Path]]:

@@ -21,6 +21,7 @@ from engine.quality import (
     MISSED_MM,
     TABLE,
     TUNING,
+    FlagSettings,
     Seen,
     Sound,
     flags_after,
@@ -36,6 +37,7 @@ from engine.take import SHAPE_INDEX, SHAPES, Array, runs
 
 FPS = 30.0
 measure = bundled_face().measure
+EVERY = FlagSettings(counts={name: True for name in KINDS})
 SAID = ["M", "AA1", "B", "P", "IY", "M", "V", "B", "F", "M", "P", "B"]
 STEADY = [i for i, name in enumerate(SHAPES) if name.startswith(("brow", "cheek", "nose"))]
 CLOSED_FACE = {"jawOpen": 0.0, "mouthClose": 0.3, "mouthShrugLower": 1.0, "mouthRollUpper": 1.0}
@@ -97,7 +99,7 @@ def test_looking_again_near_an_edit_finds_what_looking_at_everything_does(
     seed: int, start: int, length: int, edit: str
 ) -> None:
     before = troubled(seed)
-    flags = flags_of(before)
+    flags = flags_of(before, EVERY)
     stop = min(len(before.weights), start + length)
     weights, lost = before.weights.copy(), before.lost.copy()
     if edit == "still":
@@ -109,11 +111,11 @@ def test_looking_again_near_an_edit_finds_what_looking_at_everything_does(
     else:
         lost[start:stop] ^= True
     after = with_weights(replace(before, lost=lost), weights)
-    assert flags_after(flags, after, (start, stop)) == flags_of(after)
+    assert flags_after(flags, after, (start, stop), EVERY) == flags_of(after, EVERY)
 
 
 def test_a_troubled_take_has_every_kind_of_flag_and_each_is_told() -> None:
-    found = [flag for seed in range(8) for flag in flags_of(troubled(seed))]
+    found = [flag for seed in range(8) for flag in flags_of(troubled(seed), EVERY)]
     assert {flag.kind for flag in found} == set(KINDS) - WHOLE
     assert all(flag.start < flag.stop and 0 < flag.weight <= 1 and flag.sentence.endswith(".") for flag in found)
 
@@ -208,7 +210,7 @@ def looked(weights: Array, **more: object) -> Seen:
 
 
 def found(seen: Seen, kind: str) -> list[tuple[int, int]]:
-    return [(flag.start, flag.stop) for flag in flags_of(seen) if flag.kind == kind]
+    return [(flag.start, flag.stop) for flag in flags_of(seen, EVERY) if flag.kind == kind]
 
 
 def test_a_kind_tells_its_name_its_threshold_and_its_reach() -> None:
@@ -408,7 +410,7 @@ def test_a_mouth_that_nobody_was_recorded_to_make_is_flagged_and_a_missing_prior
     names = ("mouthStretchLeft", "mouthStretchRight", "mouthFrownLeft", "mouthLeft", "mouthUpperUpRight", "jawOpen")
     weights[60:70, [SHAPE_INDEX[name] for name in names]] = 1.0
     assert found(looked(weights), "unlike") == [(60, 70)]
-    text = next(flag.sentence for flag in flags_of(looked(weights)) if flag.kind == "unlike")
+    text = next(flag.sentence for flag in flags_of(looked(weights), EVERY) if flag.kind == "unlike")
     assert "further from its mean pose than all 4,000 recorded faces" in text
 
     def missing() -> None:
