@@ -83,11 +83,13 @@ def align(before: Take, after: Take, *, offset_s: float | None = None) -> Alignm
             if correlation >= Tuning.alike or (same_clock and abs(told) * after.fps < 0.5):
                 return Alignment(told, "timecode", correlation)
     together = _correlation_at(before, after, 0.0)
+    if same_clock and together >= Tuning.alike:
+        return Alignment(0.0, "start", together)
     lag = _best_lag(before, after)
     correlation = _correlation_at(before, after, lag)
     if same_clock and correlation < Tuning.alike:
         return Alignment(0.0, "start", together)
-    if together >= Tuning.alike and (same_clock or together >= correlation):
+    if together >= max(Tuning.alike, correlation):
         return Alignment(0.0, "start", together)
     return Alignment(lag, "correlation", correlation)
 

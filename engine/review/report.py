@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS
 from engine.project import Note, Verdict
 from engine.quality import KINDS, TABLE, Dismissal, Flag
 from engine.review.changes import Change, Comparison, Edited
@@ -20,6 +20,7 @@ from engine.take import Array, Mask, Take, runs, timecode
 
 CHART_POINTS = 1200  # of a curve drawn in the report; more cannot be told apart at its width
 CHART_WIDTH, CHART_HEIGHT = 960, 64  # px
+LEAST_SHOWN = 0.05  # mm or degrees that a control must change by for its curve to be drawn
 FLAGS_SHOWN = 200  # the heaviest; a table of thousands is read by nobody
 
 REGION_TITLES = {
@@ -97,11 +98,12 @@ def _unmatched(
 
 @dataclass(frozen=True)
 class _Chart:
-    """One control's difference as an SVG polyline, with the largest difference in mm."""
+    """One control's difference as an SVG polyline, with the largest difference in its unit."""
 
     title: str
     points: str
-    largest_mm: float
+    largest: float
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -245,14 +247,19 @@ def _frames(start: int, stop: int) -> str:
 
 
 def _charts(compared: Comparison) -> list[_Chart]:
-    """Return the difference of each control that changed, largest first."""
+    """Return the difference of each control that changed, largest first; those in one unit are drawn to one scale."""
     difference = (compared.controls[1] - compared.controls[0]) * compared.common[:, None]
     largest = np.abs(difference).max(axis=0, initial=0.0)
-    scale = max(float(largest.max(initial=0.0)), 1e-9)
-    order = [int(column) for column in np.argsort(-largest) if largest[column] > 0.01]
+    scales = {
+        unit: max([1e-9, *(size for size, control in zip(largest, ALL_CONTROLS, strict=True) if control.unit == unit)])
+        for unit in {control.unit for control in ALL_CONTROLS}
+    }
+    order = [int(column) for column in np.argsort(-largest) if largest[column] > LEAST_SHOWN]
     return [
-        _Chart(CONTROLS[column].title, _polyline(difference[:, column], scale), float(largest[column]))
-        for column in order
+        _Chart(
+            control.title, _polyline(difference[:, column], scales[control.unit]), float(largest[column]), control.unit
+        )
+        for column, control in ((column, ALL_CONTROLS[column]) for column in order)
     ]
 
 
