@@ -74,7 +74,7 @@ def review(
         print_json(_as_json(found))
     else:
         say(f"{_summary(found)}; wrote {', '.join(str(path) for path in wanted)}")
-    if not found.comparison.alignment.alike:
+    if first is not None and not found.comparison.alignment.alike:
         remark(_not_alike(found))
         raise SystemExit(FOUND)
 

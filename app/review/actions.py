@@ -9,7 +9,8 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from app.review.comparing import Comparing, Pair
-from app.review.reporting import Reporting
+from app.review.handing_on import HandingOnSection
+from app.review.reporting import Arguments, Reporting, findings, movie, report
 from app.review.section import ReviewSection
 from app.session import Change, Session
 from app.session.commands import EditCommand
@@ -41,10 +42,12 @@ class ReviewActions(QObject):
         self.comparing.changed.connect(self._show)
         self.comparing.paired.connect(self._open_pair)
         self.reporting = Reporting()
-        self.reporting.written.connect(lambda path: self.told.emit(f"The report is in {path.name}."))
+        self.handing_on = HandingOnSection(session, self.reporting)
+        self.reporting.written.connect(lambda path: self.told.emit(f"{path.name} is written."))
         for part in (self.comparing, self.reporting):
             part.failed.connect(self.failed)
-        self.section.wanted.connect(lambda name: getattr(self, name)())
+        for section in (self.section, self.handing_on):
+            section.wanted.connect(lambda name: getattr(self, name)())
         # Opens a take in place of what is open, once that is safe; the window says how.
         self.open_take: Callable[[Take, Callable[[], None]], None] = lambda _take, _then: None
         session.changed.connect(self._on_change)
@@ -84,11 +87,27 @@ class ReviewActions(QObject):
 
     def write_report(self) -> None:
         """Choose a file and write what was changed as a page to read anywhere."""
-        suggested = beside(self._session.document.path, f"{Path(self._session.document.name).stem}_review.html")
-        path, _ = ask_where(self._window, "Write a report", suggested, {"Report (*.html)": ".html"})
+        self._write("Write a report", "review.html", {"Report (*.html)": ".html"}, report)
+
+    def write_movie(self) -> None:
+        """Choose a file and write the take before and after its edits, side by side, with sound, timecode and notes."""
+        document = self._session.document
+        audio = document.audio
+        sound = None if audio is None or audio.path is None else (audio.path, document.offset_s("audio"))
+        self._write("Write a movie", "review.mp4", {"Movie (*.mp4)": ".mp4"}, movie(sound))
+
+    def write_findings(self) -> None:
+        """Choose a file and write flags and notes as a table, as JSON, or as markers for editors."""
+        kinds = {"Table (*.csv)": ".csv", "JSON (*.json)": ".json", "Markers for editors (*.edl)": ".edl"}
+        self._write("Write flags and notes", "notes.csv", kinds, findings)
+
+    def _write(self, title: str, ending: str, kinds: dict[str, str], arguments: Arguments) -> None:
+        document = self._session.document
+        suggested = beside(document.path, f"{Path(document.name).stem}_{ending}")
+        path, _ = ask_where(self._window, title, suggested, kinds)
         if path is not None:
-            self.told.emit("Writing the report…")
-            self.reporting.write(self._session.document.contents(), self._session.document.name, path)
+            self.told.emit(f"Writing {path.name}…")
+            self.reporting.write(document.contents(), document.name, path, arguments)
 
     def _show(self, changes: tuple[Difference, ...]) -> None:
         self.section.show_changes(changes)

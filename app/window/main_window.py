@@ -134,6 +134,7 @@ class MainWindow(QMainWindow):
             self.smoothing,
             self.spans,
             self.review.section,
+            self.review.handing_on,
             self.facts,
             self.flags,
             self.notes,

@@ -53,8 +53,10 @@ def heard_at(path: Path) -> float:
     return float(loudest.pts * loudest.time_base) + int(np.argmax(samples > 0.3)) / loudest.sample_rate
 
 
-@pytest.mark.parametrize("fps", [24.0, 29.97, 30.0, 60.0])
-@pytest.mark.parametrize("codec", [None, *CODECS])
+@pytest.mark.parametrize(
+    ("fps", "codec"),
+    [(24.0, None), (29.97, None), (30.0, None), (60.0, None), *((29.97, codec) for codec in CODECS if codec != "av1")],
+)
 def test_flash_and_click_stay_together(tmp_path: Path, fps: float, codec: str | None) -> None:
     rate, path = rate_of(fps), tmp_path / "a.mp4"
     count, flash = round(LASTING_S * rate), round(FLASH_S * rate)
