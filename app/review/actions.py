@@ -43,11 +43,11 @@ class ReviewActions(QObject):
         self.comparing.paired.connect(self._open_pair)
         self.reporting = Reporting()
         self.handing_on = HandingOnSection(session, self.reporting)
-        self.reporting.written.connect(lambda path: self.told.emit(f"{path.name} is written."))
+        self.reporting.written.connect(self._tell_written)
         for part in (self.comparing, self.reporting):
             part.failed.connect(self.failed)
         for section in (self.section, self.handing_on):
-            section.wanted.connect(lambda name: getattr(self, name)())
+            section.wanted.connect(self._carry_out)
         # Opens a take in place of what is open, once that is safe; the window says how.
         self.open_take: Callable[[Take, Callable[[], None]], None] = lambda _take, _then: None
         session.changed.connect(self._on_change)
@@ -56,6 +56,12 @@ class ReviewActions(QObject):
         """End the threads."""
         self.comparing.close()
         self.reporting.close()
+
+    def _tell_written(self, path: Path) -> None:
+        self.told.emit(f"{path.name} is written.")
+
+    def _carry_out(self, name: str) -> None:
+        getattr(self, name)()
 
     def review_tool(self) -> None:
         """Show what was changed."""

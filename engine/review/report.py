@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from engine import assets
 from engine.controls import ALL_CONTROLS
 from engine.project import Note, Verdict
 from engine.quality import KINDS, TABLE, Dismissal, Flag
@@ -223,7 +223,7 @@ def index(entries: Sequence[Entry]) -> str:
 def _environment() -> Environment:
     """Return what fills in the templates; everything put into them is escaped."""
     return Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+        loader=FileSystemLoader(assets.TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
 
 
