@@ -113,8 +113,8 @@ class WindowParts(QMainWindow):
         review = self.review
         sections = (
             *(self.brush, self.value, self.pins, self.clean, self.live, *self.retarget.sections),
-            *(self.smoothing, self.spans, review.queue, review.section, self.facts, self.flags, self.notes),
-            *(review.verdict, self.attached),
+            *(self.smoothing, self.spans, review.queue, review.section, review.handing_on),
+            *(self.facts, self.flags, self.notes, review.verdict, self.attached),
         )
         self.inspector = Inspector(session, sections)
 
