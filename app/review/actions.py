@@ -51,11 +51,11 @@ class ReviewActions(QObject):
         self.comparing.aligned.connect(self._align)
         for moved in (self.comparing.failed, self.comparing.stepped):
             moved.connect(self._show_alignment)
-        self.reporting.written.connect(lambda path: self.told.emit(f"The report is in {path.name}."))
+        self.reporting.written.connect(self._tell_written)
         for part in (self.comparing, self.queueing, self.reporting):
             part.failed.connect(self.failed)
         for section in (self.section, self.verdict, self.queue):
-            section.wanted.connect(lambda name: getattr(self, name)())
+            section.wanted.connect(self._carry_out)
         self.section.moved.connect(self.comparing.shift)
         # What opens a take or a project in place of what is open, once that is safe; the window says how.
         self.open_take: Callable[[Take, Callable[[], None]], None] = lambda _take, _then: None
@@ -69,6 +69,12 @@ class ReviewActions(QObject):
         self.comparing.close()
         self.queueing.close()
         self.reporting.close()
+
+    def _tell_written(self, path: Path) -> None:
+        self.told.emit(f"The report is in {path.name}.")
+
+    def _carry_out(self, name: str) -> None:
+        getattr(self, name)()
 
     # --- actions
 

@@ -68,7 +68,7 @@ class Comparing(QObject):
         self._raw: tuple[Take, Take] | None = None  # the take that is open as recorded, and the one before on its clock
         self._work = LatestWins(_carry_out, name="review")
         self._work.done.connect(self._arrived)
-        self._work.failed.connect(lambda _request, sentence, advice: self.failed.emit(sentence, advice))
+        self._work.failed.connect(self._refused)
         session.changed.connect(self._on_change)
         session.document.undo.indexChanged.connect(self._on_step)
 
@@ -110,6 +110,9 @@ class Comparing(QObject):
             )
         else:
             self._work.submit(_Shift(session.document.original, session.document.take, raw, offset_s), "shift")
+
+    def _refused(self, request: object, sentence: str, advice: str) -> None:
+        self.failed.emit(sentence, advice)
 
     def close(self) -> None:
         """End the thread."""
