@@ -194,7 +194,7 @@ class Timeline(QWidget):
         """Scrub on the ruler; in a lane take hold of what is there, or begin to mark a span; with Shift select."""
         if event.button() != Qt.MouseButton.LeftButton:
             return
-        x, under, view = event.position().x(), self._hit(event.position()), self._session.view.range
+        x, under, view = event.position().x(), self._hit(event.position()), self._session.view
         grip = under.grip(selects=bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
         if grip is Grip.RANGE:
             self._selecting, self._marking = under.frame, under.lane == "spans"
