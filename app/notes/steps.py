@@ -49,7 +49,11 @@ def following(notes: Iterable[Note], frame: int, chosen: Note | None, *, by: int
         index
         for index, note in enumerate(listed)
         if not note.resolved
-        and ((index - here) * by > 0 and (note.frame - frame) * by >= 0 if here is not None else (note.frame - frame) * by > 0)
+        and (
+            (index - here) * by > 0 and (note.frame - frame) * by >= 0
+            if here is not None
+            else (note.frame - frame) * by > 0
+        )
     ]
     return None if not places else listed[places[0] if by > 0 else places[-1]]
 
