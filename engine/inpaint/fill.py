@@ -87,10 +87,11 @@ def refill(
     take: Take,
     request: Request,
     *,
-    seeds: Sequence[int] = (0,),
+    seeds: Sequence[int] | None = None,
     filler: Filler | None = None,
 ) -> list[Fill]:
-    """Fill a span as `request` says, once per seed; raises `EditError` as `fill` does."""
+    """Fill a span as `request` says, once per seed, its own without any; raises `EditError` as `fill` does."""
+    seeds = (request.seed,) if seeds is None else seeds
     if not len(seeds):
         raise EditError("At least one variant must be asked for.")
     request = checked(request, take)
@@ -103,7 +104,7 @@ def refill(
         gap = gap if gap.guided.any() else replace(gap, rest=_rest(take, [request.frames, *request.besides]))
         made = (filler or bundled()).fill(gap, seeds=seeds)
     return [
-        Fill(_placed(take, request, motion, window), request.frames, seed, style, request)
+        Fill(_placed(take, request, motion, window), request.frames, seed, style, replace(request, seed=seed))
         for seed, motion in zip(seeds, made, strict=True)
     ]
 

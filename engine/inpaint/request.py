@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from engine.controls import control_index
 from engine.errors import EditError
 from engine.inpaint.regions import region_shapes
+from engine.inpaint.stored import FAULTS, FIELDS, GONE, guide_of, kept_guide
 from engine.pose import Pose, filled
 from engine.speech.visemes import Cue, class_of
 from engine.take import SHAPES, Array, Take
@@ -32,8 +33,10 @@ class Request:
     lost : allows spans of a single frame
     besides : further spans that are marked for work: they lend no motion to this one
     unmade : those among them that are not filled yet: beside this one they are no more known than lost frames
+    seed : which of the many possible motions
     """
 
+    verb: ClassVar[str] = "fill"
     frames: Frames
     region: str = "face"
     pins: Mapping[int, Pose] = field(default_factory=dict)
@@ -45,10 +48,26 @@ class Request:
     lost: bool = False
     besides: tuple[Frames, ...] = ()
     unmade: tuple[Frames, ...] = ()
+    seed: int = 0
 
     def poses(self) -> dict[int, Array]:
         """Return pins as (52,) weights by frame, NaN where a shape is free."""
         return {frame: filled(pose) for frame, pose in self.pins.items()}
+
+    def stored(self) -> dict[str, Any]:
+        """Return all that it says, as JSON can hold it; of a guide, the frames around the span."""
+        start, stop = self.frames
+        there = kept_guide(self.guide, (start + self.guide_offset, stop + self.guide_offset))
+        return {name: field.encode(getattr(self, name)) for name, field in FIELDS.items()} | there
+
+    @classmethod
+    def restored(cls, inputs: Mapping[str, Any]) -> Request:
+        """Return the request that was stored; raises `EditError` for anything else."""
+        known = {"seed": 0, **inputs}  # it was kept beside the request before
+        try:
+            return cls(guide=guide_of(inputs), **{name: field.decode(known[name]) for name, field in FIELDS.items()})
+        except FAULTS as error:
+            raise GONE from error
 
 
 def merged_pins(pins: Iterable[tuple[int, Pose]]) -> dict[int, Pose]:
