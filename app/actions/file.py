@@ -20,11 +20,12 @@ from app.settings import Settings
 from app.widgets.saving import ask_where, beside, may_replace
 from app.widgets.text import message_box
 from engine.errors import EngineError
-from engine.formats import FORMATS, cues, livelink_folder, write_take
-from engine.formats.atomic import sweep
-from engine.formats.importing import Imported
-from engine.formats.livelink_folder import CARD
-from engine.formats.reading import Sides
+from engine.formats import FORMATS, cues, write_take
+from engine.formats.base.atomic import sweep
+from engine.formats.base.reading import Sides
+from engine.formats.livelink import folder as livelink_folder
+from engine.formats.livelink.folder import CARD
+from engine.formats.livelink.importing import Imported
 from engine.project import ENDING
 from engine.take import Take
 from engine.words import NAME_LENGTH, plain

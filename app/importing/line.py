@@ -14,8 +14,8 @@ from app.theme import GRID
 from app.widgets.text import Label, Name, tip
 from engine.errors import EngineError
 from engine.formats import livelink
-from engine.formats.importing import Imported, in_words
-from engine.formats.reading import AUTOMATIC, SIDES, SIDES_IN_WORDS, ReadAs, Reading
+from engine.formats.base.reading import AUTOMATIC, SIDES, SIDES_IN_WORDS, ReadAs, Reading
+from engine.formats.livelink.importing import Imported, in_words
 from engine.words import NAME_LENGTH, plain
 
 RATES = ("23.976", "24", "25", "29.97", "30", "48", "50", "59.94", "60", "120")

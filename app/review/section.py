@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from datetime import UTC, datetime
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QComboBox, QLineEdit, QListWidget, QListWidgetItem, QPushButton
@@ -11,6 +13,7 @@ from app.session import Change, Session
 from app.session.commands import MarkCommand
 from app.theme import GRID
 from app.widgets.section import Section, quiet
+from engine.project import Verdict
 from engine.review.changes import Change as Difference
 from engine.review.report import REGION_TITLES, clock
 from engine.words import SENTENCE_LENGTH, counted, plain
@@ -35,6 +38,7 @@ class ReviewSection(Section):
     def __init__(self, session: Session) -> None:
         super().__init__(session, "Changes")
         self._changes: tuple[Difference, ...] = ()
+        self.author: Callable[[], str] = str  # who judges
         self.summary = quiet("Comparing…")
         self.column.addWidget(self.summary)
         self.list = QListWidget()
@@ -123,11 +127,13 @@ class ReviewSection(Section):
     def _judge(self, *_: object) -> None:
         chosen = self.verdict.currentIndex()
         why = self.sentence.text().strip()
-        verdict = "" if chosen == 0 else f"{VERDICTS[chosen]}: {why}" if why else VERDICTS[chosen]
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        verdict = Verdict(VERDICTS[chosen], why, self.author(), now) if chosen else Verdict("", "", self.author(), now)
         marks = self.session.marks
-        if verdict != marks.verdict:
+        if verdict.sentence != marks.verdict:
             title = "take back the verdict" if chosen == 0 else f"judge: {VERDICTS[chosen].lower()}"
-            self.session.undo.push(MarkCommand(self.session, replace(marks, verdict=verdict), title))
+            verdicts = (*marks.verdicts, verdict)
+            self.session.undo.push(MarkCommand(self.session, replace(marks, verdicts=verdicts), title))
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:

@@ -10,7 +10,7 @@ from PySide6.QtGui import QUndoCommand
 
 from app.session.session import MEDIA, Session
 from engine.extended import bundled_face
-from engine.formats.reading import ReadAs
+from engine.formats.base.reading import ReadAs
 from engine.project import (
     MARK,
     READING,

@@ -18,7 +18,7 @@ from engine.controls import CONTROLS
 from engine.extended import bundled_face
 from engine.formats import livelink
 from engine.formats.audio import Audio
-from engine.formats.reading import ReadAs
+from engine.formats.base.reading import ReadAs
 from engine.project import Contents, Marks, Replayed, Span
 from engine.speech.lane import VisemeLane
 from engine.take import Array, Mask, Take, runs

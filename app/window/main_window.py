@@ -67,7 +67,7 @@ from app.window.notices import Notices
 from app.window.screen import DESIGNED, stay_on_screen
 from app.window.status import StatusBar
 from engine.assets import DEMO_TAKE
-from engine.formats.importing import imported
+from engine.formats.livelink.importing import imported
 from engine.take import Take
 
 
@@ -220,7 +220,7 @@ class MainWindow(QMainWindow):
         self.preview.timed.connect(self.status.timed)
         self._connect_media()
         self._connect_retarget()
-        self.notes.author = lambda: self.settings.author
+        self.notes.author = self.review.section.author = lambda: self.settings.author
         self.preferences.themed.connect(self._wear)
         for clock in (self.timeline, self.status):
             self.preferences.counted.connect(clock.count_in_frames)

@@ -16,8 +16,8 @@ from pytestqt.qtbot import QtBot
 
 from app.window.main_window import MainWindow
 from engine.formats import livelink, read_take, write_take
-from engine.formats.livelink_sides import exchange
-from engine.formats.reading import Reading
+from engine.formats.base.reading import Reading
+from engine.formats.livelink.sides import exchange
 from engine.take import SHAPE_INDEX, SHAPES, Take
 from tests.films import film
 from tests.journeys.conftest import load, noted, saved_as, settled

@@ -7,7 +7,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.retarget.actions import RetargetActions
-from engine.formats.markers_layout import read
+from engine.formats.markers.layout import read
 from tests.app.retarget.test_retargeting import LEFT, aimed, click, settle
 
 __all__ = ["aimed"]  # a fixture

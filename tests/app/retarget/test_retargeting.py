@@ -16,8 +16,8 @@ from app.retarget.strengths import STEPS, position, strength_at
 from app.session.commands import restored
 from engine.character import Character, bundled
 from engine.extended import bundled_face
-from engine.formats.capture import Markers
 from engine.formats.markers import write
+from engine.formats.markers.capture import Markers
 from engine.project import replay
 from engine.spacetime.layout import standard
 from engine.spacetime.matching import Matching

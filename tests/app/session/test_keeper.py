@@ -17,7 +17,7 @@ from engine import project
 from engine.editing import Patch
 from engine.errors import EngineError
 from engine.extended import bundled_face
-from engine.project import Marks, Note, Pin, Project, Span
+from engine.project import Marks, Note, Pin, Project, Span, Verdict
 from engine.take import SHAPES, Take
 from tests.performance import kills
 
@@ -110,7 +110,11 @@ def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make:
     kept(qtbot, first, lambda: session.undo.push(MarkCommand(session, marked, "mark a span")))
     noted = replace(marked, notes=(Note(3, "Ana", "2025-01-02T03:04:05Z", "here"),))
     kept(qtbot, first, lambda: session.set_marks(noted))
-    kept(qtbot, first, lambda: session.undo.push(MarkCommand(session, replace(noted, verdict="approved"), "approve")))
+    kept(
+        qtbot,
+        first,
+        lambda: session.undo.push(MarkCommand(session, replace(noted, verdicts=(Verdict("Approved"),)), "approve")),
+    )
     assert second.left_over() == []  # its program still runs
     first.close()
 
@@ -350,5 +354,5 @@ def test_the_session_s_contents_are_what_its_edits_come_to(make: Made) -> None:
     state = project.replay(session.contents())
     np.testing.assert_array_equal(state.take.weights, session.take.weights)
     np.testing.assert_array_equal(state.asked, session.asked)
-    session.set_marks(replace(session.marks, verdict="approved"))
-    assert session.contents().marks.verdict == "approved"
+    session.set_marks(replace(session.marks, verdicts=(Verdict("Approved"),)))
+    assert session.contents().marks.verdict == "Approved"

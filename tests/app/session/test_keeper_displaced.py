@@ -214,7 +214,7 @@ def _is_open(path: Path) -> bool:
 
 
 def test_opening_a_file_removes_what_a_kill_was_writing_beside_it(make: Made, tmp_path: Path) -> None:
-    code = "import os, sys; from pathlib import Path; from engine.formats.atomic import replacement; "
+    code = "import os, sys; from pathlib import Path; from engine.formats.base.atomic import replacement; "
     code += "made = replacement(Path(sys.argv[1])); made.__enter__(); os._exit(0)"
     subprocess.run([sys.executable, "-c", code, str(tmp_path / "take.csv")], check=True)
     write_take(Take(weights=np.zeros((9, len(SHAPES))), fps=24.0), beside := tmp_path / "other.csv")

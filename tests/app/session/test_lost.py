@@ -16,7 +16,7 @@ from engine.formats import read_take, write_take
 from engine.inpaint.fill import fill
 from engine.project import Project, Span, replay
 from engine.take import Take, runs
-from tests.engine.formats.livelink_files import Writer, content_of
+from tests.engine.formats.livelink.files import Writer, content_of
 
 GAP, ROWS = (40, 85), (100, 112)  # without a row; rows without a face
 

@@ -13,8 +13,8 @@ from engine import project
 from engine.editing import Patch
 from engine.extended import bundled_face
 from engine.formats import livelink, read_take, write_take
-from engine.formats.livelink_sides import exchange
-from engine.formats.reading import ReadAs, Reading
+from engine.formats.base.reading import ReadAs, Reading
+from engine.formats.livelink.sides import exchange
 from engine.project import Contents, Project, replay
 from engine.take import SHAPES, Take
 
