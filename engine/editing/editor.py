@@ -12,7 +12,6 @@ from engine.editing.requests import (
     CleanRequest,
     ControlRequest,
     DragRequest,
-    FillRequest,
     PasteRequest,
     PinRequest,
     Request,
@@ -22,6 +21,7 @@ from engine.editing.requests import (
 )
 from engine.errors import EditError
 from engine.extended import bundled_face
+from engine.inpaint.request import FillRequest
 from engine.patch import Patch
 from engine.take import SHAPE_INDEX, Array, Take
 

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Literal, Protocol, cast
 import numpy as np
 
 from engine.errors import EditError
-from engine.inpaint.request import Request as FillRequest
+from engine.inpaint.request import FillRequest
 from engine.pose import Pose, filled
 from engine.retouch import PASTE_FEATHER_S, SMOOTH_FEATHER_S
 from engine.take import SHAPE_INDEX, SHAPES, Array

@@ -25,7 +25,7 @@ STYLES: tuple[Style, ...] = ("auto", "bridge", "perform")
 
 
 @dataclass(frozen=True, eq=False)
-class Request:
+class FillRequest:
     """What steers a fill; see `fill` for the meaning of most.
 
     Attributes
@@ -61,7 +61,7 @@ class Request:
         return {name: field.encode(getattr(self, name)) for name, field in FIELDS.items()} | there
 
     @classmethod
-    def restored(cls, inputs: Mapping[str, Any]) -> Request:
+    def restored(cls, inputs: Mapping[str, Any]) -> FillRequest:
         """Return the request that was stored; raises `EditError` for anything else."""
         known = {"seed": 0, **inputs}  # it was kept beside the request before
         try:
@@ -84,7 +84,7 @@ def merged_pins(pins: Iterable[tuple[int, Pose]]) -> dict[int, Pose]:
     return dict(merged)
 
 
-def checked(request: Request, take: Take) -> Request:
+def checked(request: FillRequest, take: Take) -> FillRequest:
     """Return a request that fits a take; raises `EditError` with one sentence where it does not."""
     _check_span(request, take)
     _check_pins(request)
@@ -98,7 +98,7 @@ def checked(request: Request, take: Take) -> Request:
     return replace(request, controls={name: _curve(name, c, length) for name, c in request.controls.items()})
 
 
-def _check_span(request: Request, take: Take) -> None:
+def _check_span(request: FillRequest, take: Take) -> None:
     start, stop = request.frames
     if not 0 <= start < stop <= len(take):
         raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
@@ -114,7 +114,7 @@ def _check_span(request: Request, take: Take) -> None:
         )
 
 
-def _check_pins(request: Request) -> None:
+def _check_pins(request: FillRequest) -> None:
     start, stop = request.frames
     region = region_shapes(request.region)
     for frame, pose in request.poses().items():
@@ -129,7 +129,7 @@ def _check_pins(request: Request) -> None:
             raise EditError(f"The pin at frame {frame} sets {shape} outside 0..1.")
 
 
-def _check_guide(request: Request, guide: Take, take: Take) -> None:
+def _check_guide(request: FillRequest, guide: Take, take: Take) -> None:
     if abs(guide.fps / take.fps - 1) > 1e-3:
         raise EditError(
             f"The guide runs at {guide.fps:.5g} frames per second, the take at {take.fps:.5g}.",

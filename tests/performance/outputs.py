@@ -15,6 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from engine.formats.capture import Markers
 from PySide6.QtCore import QEventLoop
 from PySide6.QtWidgets import QApplication
 
@@ -24,7 +25,6 @@ from app.window.main_window import MainWindow
 from engine.character import bundled, save
 from engine.formats import labels as label_files
 from engine.formats import read_take
-from engine.formats.capture import Markers
 from engine.formats.labels import LabelFile
 from engine.formats.markers import write as write_markers
 from engine.project import Span
@@ -89,7 +89,9 @@ def in_the_shell(take: Path, folder: Path) -> None:
         for file in sorted(folder.glob(f"{out.stem}*{ending}")):
             arrays = [np.load(file)[key] for key in sorted(np.load(file))] if ending == ".npz" else []
             written.append(digest(*arrays) if arrays else digest(np.frombuffer(file.read_bytes(), np.uint8)))
-        print(f"{take.stem:12} shell  {name:18} {code} {digest(np.frombuffer(told.encode(), np.uint8))} {' '.join(written)}")
+        print(
+            f"{take.stem:12} shell  {name:18} {code} {digest(np.frombuffer(told.encode(), np.uint8))} {' '.join(written)}"
+        )
 
 
 class Window:
@@ -116,7 +118,9 @@ class Window:
         self.until(lambda: session.contents().edits[-1:] != before and not self.window.inference.busy)
         edit = session.contents().edits[-1]
         made = digest(session.take.weights, session.take.lost, np.nan_to_num(session.asked), session.controls)
-        print(f"{session.take.name[:12]:12} window {name:18} {made} {edit.kind} {edit.start} {edit.stop} {edit.title!r}")
+        print(
+            f"{session.take.name[:12]:12} window {name:18} {made} {edit.kind} {edit.start} {edit.stop} {edit.title!r}"
+        )
 
     def filled(self) -> None:
         """Fill the chosen span and keep the third variant."""

@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.session import Session
 from app.session.commands import EditCommand, restored
 from engine import project
-from engine.editing import Patch, edit_control
+from engine.editing import ControlRequest, Patch, set_control
 from engine.formats import read_take, write_take
 from engine.inpaint.fill import fill
 from engine.project import Project, Span, replay
@@ -50,7 +50,7 @@ def test_each_step_and_each_undo_says_what_is_lost(session: Session, tmp_path: P
     states = [session.take]
     pushed(session, Patch.between(session.take, fill(session.take, (40, 60))[0].take, (40, 60)), "fill")
     states.append(session.take)
-    pushed(session, edit_control(session.take, "lips_vertical", (104, 108), "add", 4.0))
+    pushed(session, set_control(session.take, ControlRequest("lips_vertical", (104, 108), "add", 4.0)))
     states.append(session.take)
     assert runs(states[1].lost) == [(60, 85), ROWS] and states[2].lost.sum() < states[1].lost.sum()
     for state in states:
