@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Literal, Protocol, cast
 
 import numpy as np
 
+from engine.controls import ALL_CONTROLS, ALL_INDEX
 from engine.errors import EditError
 from engine.inpaint.request import FillRequest
 from engine.pose import Pose, filled
@@ -67,13 +68,22 @@ class DragRequest:
         return self.start, self.start + len(self.asked)
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it."""
-        return {"start": self.start, "curves": packed(self.asked), "believability": self.believability}
+        """Return all that it says, as JSON can hold it: the curves of those controls that something is asked of."""
+        columns = np.flatnonzero(~np.isnan(self.asked).all(axis=0))
+        curves = {ALL_CONTROLS[column].name: packed(self.asked[:, column]) for column in columns}
+        known = {"start": self.start, "length": len(self.asked), "curves": curves}
+        return {**known, "believability": self.believability}
 
     @classmethod
     def restored(cls, inputs: Mapping[str, Any]) -> DragRequest:
         """Return the request that was stored."""
-        return cls(int(inputs["start"]), unpacked(inputs["curves"]), float(inputs["believability"]))
+        curves = {ALL_INDEX[name]: unpacked(curve) for name, curve in inputs["curves"].items()}
+        if any(curve.shape != (inputs["length"],) for curve in curves.values()) or not curves:
+            raise GONE
+        asked = np.full((int(inputs["length"]), len(ALL_CONTROLS)), np.nan)
+        for column, curve in curves.items():
+            asked[:, column] = curve
+        return cls(int(inputs["start"]), asked, float(inputs["believability"]))
 
 
 @dataclass(frozen=True)
