@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
 from app.session.commands import EditCommand
-from app.session.session import Change, Session
-from engine.editing import DragRequest, Editor, Request, warm_up
+from app.session.session import Session
+from engine.editing import Request
 from engine.take import Array, Take
 
 if TYPE_CHECKING:
@@ -123,7 +122,7 @@ class Runner(QObject):
     def ask(self, asked: Asked) -> None:
         """Have a wish carried out; `arrived` or `failed` follows, unless another wish does."""
         self.last = asked
-        self._work.submit((asked, self._session.take))
+        self._work.submit((asked, self._session.document.take))
 
     def is_last(self, asked: Asked) -> bool:
         """Return whether a wish is the last one, perhaps by another title by now."""
@@ -136,9 +135,9 @@ class Runner(QObject):
     def keep(self, asked: Asked, patch: Patch) -> EditCommand:
         """Make what came of a wish one undo step."""
         inputs, session = asked.stored, self._session
-        step = EditCommand(session, patch, asked.title, kind=asked.verb, inputs=inputs, marks=asked.marks)
+        step = EditCommand.of(session.document, patch, asked.title, kind=asked.verb, inputs=inputs, marks=asked.marks)
         self.drop()
-        session.undo.push(step)
+        session.document.undo.push(step)
         return step
 
     def close(self) -> None:
@@ -161,7 +160,7 @@ class Runner(QObject):
 
     def _deliver(self, request: tuple[Asked, Take], result: Any) -> None:
         asked, take = request
-        if result is not None and self.last is not None and take is self._session.take:
+        if result is not None and self.last is not None and take is self._session.document.take:
             self.arrived.emit(asked, result)
 
     def _refused(self, request: object, sentence: str, advice: str) -> None:

@@ -90,7 +90,7 @@ def opened(session: Session, wish: Wish, report: Callable[[float], None] = lambd
         contents = project.contents
         state = replay(contents)
         measured = _measured(state.original or contents.original), _measured(state.take)
-        steps = tuple(restored(session, contents, state))
+        steps = tuple(restored(session.document, contents, state))
         report(1.0)
     except BaseException:
         project.close()

@@ -113,13 +113,18 @@ class Window:
     def step(self, name: str, act: Callable[[], object]) -> None:
         """Act, wait for the step that it makes, and print what it came to."""
         session = self.session
-        before = session.contents().edits[-1:]
+        before = session.document.contents().edits[-1:]
         act()
-        self.until(lambda: session.contents().edits[-1:] != before and not self.window.inference.busy)
-        edit = session.contents().edits[-1]
-        made = digest(session.take.weights, session.take.lost, np.nan_to_num(session.asked), session.controls)
+        self.until(lambda: session.document.contents().edits[-1:] != before and not self.window.inference.busy)
+        edit = session.document.contents().edits[-1]
+        made = digest(
+            session.document.take.weights,
+            session.document.take.lost,
+            np.nan_to_num(session.document.asked),
+            session.document.controls,
+        )
         print(
-            f"{session.take.name[:12]:12} window {name:18} {made} {edit.kind} {edit.start} {edit.stop} {edit.title!r}"
+            f"{session.document.take.name[:12]:12} window {name:18} {made} {edit.kind} {edit.start} {edit.stop} {edit.title!r}"
         )
 
     def filled(self) -> None:
@@ -144,42 +149,42 @@ class Window:
         self.until(lambda: state.ready)
         state.solve()
         self.until(lambda: state.result is not None)
-        count = self.session.undo.index()
+        count = self.session.document.undo.index()
         state.keep()
-        self.until(lambda: self.session.undo.index() > count)
+        self.until(lambda: self.session.document.undo.index() > count)
 
 
 def in_the_window(take: Take, folder: Path) -> None:
     """Carry every verb out in one window, one after the other."""
     shown = Window(take, folder)
     window, session = shown.window, shown.session
-    session.choose_lane(0)
-    session.move_playhead(100)
+    session.view.choose_lane(0)
+    session.view.move_playhead(100)
     shown.step("set", lambda: window.edits.set_value(8.0))
-    asked = session.controls[110:140].copy()
+    asked = session.document.controls[110:140].copy()
     asked[:, 0] += 2.0
     shown.step("drag", lambda: (window.inference.ask(110, asked), window.inference.finish("drag")))
     shown.step("drag again", lambda: (window.inference.ask(110, asked - 1.0), window.inference.finish("drag")))
-    session.expand(0)
-    session.choose_lane(next(lane for lane in session.lanes if lane > session.lanes[0] and lane >= 16))
-    session.select((150, 170))
+    session.view.expand(0)
+    session.view.choose_lane(next(lane for lane in session.view.lanes if lane > session.view.lanes[0] and lane >= 16))
+    session.view.select((150, 170))
     shown.step("weight", lambda: window.edits.set_value(0.4))
     window.edits.copy()
-    session.move_playhead(200)
+    session.view.move_playhead(200)
     shown.step("paste", window.edits.paste)
-    session.select((210, 260))
+    session.view.select((210, 260))
     shown.step("smooth", window.edits.smooth)
     shown.step("clean", window.clean.keep)
-    session.choose_tool("pin")
-    session.select(None)
-    session.move_playhead(120)
+    session.view.choose_tool("pin")
+    session.view.select(None)
+    session.view.move_playhead(120)
     shown.step("pin", lambda: (window.pins._move("mouthSmileLeft", 0.8), window.pins.keep()))
-    session.choose_tool("drag")
-    session.select((115, 135))
+    session.view.choose_tool("drag")
+    session.view.select((115, 135))
     window.filling.start(Span(115, 135))
     shown.until(lambda: bool(window.filling.variants) and not window.filling.busy)
     window.filling.drop()
-    session.select((60, 90))
+    session.view.select((60, 90))
     shown.step("fill", shown.filled)
     shown.step("fill again", shown.filled_again)
     shown.step("retarget", lambda: shown.retargeted(folder / "broad.npz"))
