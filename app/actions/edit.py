@@ -14,7 +14,7 @@ from app.session import Session
 from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
 from app.session.inference import Inference
-from app.session.session import DEFAULT_BELIEVABILITY
+from app.session.view import DEFAULT_BELIEVABILITY
 from app.spans.filling import Filling
 from engine.controls import CONTROLS
 from engine.errors import EngineError

@@ -398,8 +398,8 @@ class Retargeting(QObject):
     def _follow(self, *_: int) -> None:
         """Put the take on the head of the last retarget in effect: undone, redone or opened with a project."""
         session = self._session
-        if session.signalsBlocked():
-            return  # a project is being opened; it says so when it is
+        if session.document.opening:
+            return  # it says so when it is open
         contents = session.document.contents()
         kept = [edit for edit in contents.edits[: contents.position] if edit.kind == KIND]
         self._kept_heads.follow(kept[-1].inputs if kept else {})

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import QObject
 
 from app.background import LatestWins
-from app.session.session import Change, Session
+from app.session.changes import Change
+from app.session.session import Session
 from engine.formats.audio import Audio
 from engine.quality import Flag, flags_after, flags_of, seen_of, sound_of
 from engine.speech.lane import VisemeLane

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
+from app.session.changes import Change
 from app.session.commands import EditCommand
-from app.session.session import Change, Session
+from app.session.session import Session
 from app.session.wishes import Wish, Wishes
 from engine.project import Marks
 from engine.take import Array, Take

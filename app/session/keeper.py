@@ -11,10 +11,11 @@ from pathlib import Path
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
 
 from app.background import LatestWins
+from app.session.changes import Change
 from app.session.keeping import Kept, Look, Saving, as_unsaved_work
 from app.session.left_over import LeftOver, new_path, unsaved_folder, unsaved_work
 from app.session.opening import Opened
-from app.session.session import Change, Session
+from app.session.session import Session
 from engine import project
 from engine.errors import EngineError
 from engine.project import Contents, DisplacedError, Project
@@ -54,7 +55,6 @@ class Keeper(QObject):
         self._stopped = False
         self._waits: Contents | None = None  # steps that could not be kept while a copy was made
         self._afterwards: list[Callable[[], None]] = []
-        self._opening = False
         self._told = ""
         self._lock = threading.Lock()
         self._work = LatestWins(self._write, name="keeper")
@@ -157,19 +157,16 @@ class Keeper(QObject):
     # --- within
 
     def _keep(self, _: int = 0) -> None:
-        stored = self._project and self._project.contents
-        if self._opening or (stored and stored.original is not self._session.document.recorded):
-            return  # another take is being opened
-        if stored and stored.edits and self._session.document.undo.count() == 0:
-            return  # only opening empties the stack: undoing leaves its steps there
+        if self._session.document.opening:
+            return  # what opening does to the stack is no work of the user's
         contents = self._session.document.contents()
-        if stored or contents.edits:
+        if self._project or contents.edits:
             self._submit(contents)
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE and not self._opening:
+        if change & Change.TAKE:
             self._detach(delete=False)
-        elif change & Change.MARKS and not self._opening:
+        elif change & Change.MARKS:
             contents = self._session.document.contents()
             if self._project or contents.edits:  # what a take brings with it is no work of the user's
                 self._submit(contents)
@@ -272,11 +269,7 @@ class Keeper(QObject):
     def _adopt(self, opened: Opened, path: Path | None, *, saved: bool) -> None:
         assert opened.project is not None and opened.state is not None
         self._detach(delete=False)
-        self._opening = True
-        try:
-            self._session.restore(opened.project.contents, path, opened.steps, opened.state, opened.measured)
-        finally:
-            self._opening = False
+        self._session.restore(opened.project.contents, path, opened.steps, opened.state, opened.measured)
         if not opened.project.read_only:
             self._kept = Kept(opened.project, saved)
             self._secure(self._kept)

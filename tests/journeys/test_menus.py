@@ -204,7 +204,7 @@ def test_the_wheel_scrolls_the_lanes_and_zooms_with_ctrl(qtbot: QtBot, window: M
     settled(qtbot, window)
     area = window.curves.parentWidget().parentWidget()
     assert isinstance(area, QScrollArea) and area.verticalScrollBar().maximum() > 0
-    view = window.session.view
+    view = window.session.view.range
     turned(window, Qt.KeyboardModifier.NoModifier)
     assert area.verticalScrollBar().value() > 0 and window.session.view.range == view
     turned(window, Qt.KeyboardModifier.ControlModifier, notches=1)

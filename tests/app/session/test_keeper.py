@@ -78,13 +78,15 @@ def refused(qtbot: QtBot, keeper: Keeper, path: Path) -> str:
 
 def alike(left: Session, right: Session) -> bool:
     for name in ("weights", "lost", "rotations"):
-        np.testing.assert_array_equal(getattr(left.take, name), getattr(right.take, name))
-        np.testing.assert_array_equal(getattr(left.original, name), getattr(right.original, name))
-    np.testing.assert_allclose(left.controls, right.controls, atol=1e-9)
-    np.testing.assert_array_equal(left.asked, right.asked)
-    titles = [[stack.text(index) for index in range(stack.count())] for stack in (left.undo, right.undo)]
+        np.testing.assert_array_equal(getattr(left.document.take, name), getattr(right.document.take, name))
+        np.testing.assert_array_equal(getattr(left.document.original, name), getattr(right.document.original, name))
+    np.testing.assert_allclose(left.document.controls, right.document.controls, atol=1e-9)
+    np.testing.assert_array_equal(left.document.asked, right.document.asked)
+    titles = [
+        [stack.text(index) for index in range(stack.count())] for stack in (left.document.undo, right.document.undo)
+    ]
     assert titles[0] == titles[1]
-    assert (left.undo.index(), left.marks) == (right.undo.index(), right.marks)
+    assert (left.document.undo.index(), left.document.marks) == (right.document.undo.index(), right.document.marks)
     return True
 
 
@@ -110,13 +112,8 @@ def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make:
     kept(qtbot, first, lambda: session.document.undo.push(MarkCommand.of(session.document, marked, "mark a span")))
     noted = replace(marked, notes=(Note(3, "Ana", "2025-01-02T03:04:05Z", "here"),))
     kept(qtbot, first, lambda: session.document.set_marks(noted))
-    kept(
-        qtbot,
-        first,
-        lambda: session.document.undo.push(
-            MarkCommand.of(session.document, replace(noted, verdicts=(Verdict("Approved"),)), "approve")
-        ),
-    )
+    judged = replace(noted, verdicts=(Verdict("Approved"),))
+    kept(qtbot, first, lambda: session.document.undo.push(MarkCommand.of(session.document, judged, "approve")))
     assert second.left_over() == []  # its program still runs
     first.close()
 
@@ -125,16 +122,16 @@ def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make:
     assert left.sentence.startswith("random (00:00:01:10), 5 edits, ")
     second.open(opened(second._session, Wish(left.path, left_over=True)))
     again = second._session
-    assert alike(session, again) and again.edited and again.path is None
+    assert alike(session, again) and again.document.edited and again.document.path is None
     while session.document.undo.canRedo():
         session.document.undo.redo()
-        again.undo.redo()
+        again.document.undo.redo()
     while session.document.undo.canUndo():
         assert alike(session, again)
         session.document.undo.undo()
-        again.undo.undo()
-    np.testing.assert_array_equal(again.take.weights, again.original.weights)
-    assert again.marks == Marks()
+        again.document.undo.undo()
+    np.testing.assert_array_equal(again.document.take.weights, again.document.original.weights)
+    assert again.document.marks == Marks()
     kept(qtbot, second, lambda: push(again, 9))  # it goes on where it was
     second.close()
     (left,) = make().left_over()
@@ -158,7 +155,7 @@ def test_a_step_that_was_merged_is_kept_as_it_became(qtbot: QtBot, make: Made) -
     for value in (0.25, 0.5):
         rows = np.full((5, len(SHAPES)), value)
         patch = Patch(2, rows, measure(rows), measure(rows))
-        kept(qtbot, first, lambda patch=patch: session.document.undo.push(Nudge(session, patch, "nudge")))
+        kept(qtbot, first, lambda patch=patch: session.document.undo.push(Nudge.of(session.document, patch, "nudge")))
     assert session.document.undo.count() == 1
     first.close()
     second.open(opened(second._session, Wish(second.left_over()[0].path, left_over=True)))

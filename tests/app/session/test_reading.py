@@ -105,15 +105,15 @@ def test_a_project_remembers_how_it_was_read(take: Take, tmp_path: Path, positio
     came = replay(contents)
     assert came.original is not None
     again = Session(take)
-    measured = tuple(Session(each).controls for each in (came.original, came.take))
-    again.restore(contents, None, tuple(restored(again, contents, came)), came, measured)
+    measured = tuple(Session(each).document.controls for each in (came.original, came.take))
+    again.restore(contents, None, tuple(restored(again.document, contents, came)), came, measured)
     assert state(again) == state(session)
     exported = read_take(tmp_path / "a.retake")
     np.testing.assert_array_equal(exported.weights, session.document.take.weights)
     assert exported.fps == session.document.take.fps
     for index in (0, 5, 3, 1, 4, 2):
         session.document.undo.setIndex(index)
-        again.undo.setIndex(index)
+        again.document.undo.setIndex(index)
         assert state(again) == state(session)
 
 
