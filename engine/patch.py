@@ -24,6 +24,7 @@ class Patch:
     reached : (frames, 16) what the new face does
     granted : (frames, 16) what was asked as far as it is believable; None where nobody asked for a curve
     lost : (frames,) bool, the frames that are lost from now on; None leaves it to `Take.with_rows`
+    lag_ms : of cleaning, by how much the frames trail the recorded ones at full strength; NaN where nothing moves
     """
 
     start: int
@@ -32,6 +33,7 @@ class Patch:
     reached: Array
     granted: Array | None = None
     lost: Mask | None = None
+    lag_ms: float | None = None
 
     @property
     def stop(self) -> int:

@@ -12,32 +12,28 @@ from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
 from app.retarget.capture import Capture, captured
-from app.retarget.carry import (
-    Carried,
-    Carrier,
-    Carry,
-    Errand,
-    Performance,
-    Pose,
-    Stopped,
-    Target,
-    opened,
-    posed,
-    with_markers,
-)
+from app.retarget.carry import Errand, Pose, Target, opened, posed, with_markers
 from app.retarget.commands import TargetCommand
 from app.retarget.kept import KeptHeads
 from app.session import Change, Session
-from app.session.commands import EditCommand
+from app.session.asked import Asked
+from app.session.edits import Runner, Tell
 from engine.character import Character, bundled
+from engine.editing import (
+    MARKERS,
+    LabelRequest,
+    Matching,
+    Performance,
+    Retargeted,
+    RetargetRequest,
+    retarget,
+    retarget_from_labels,
+)
 from engine.formats.characters.reading import Reading
-from engine.spacetime.layout import MARKERS
-from engine.spacetime.matching import Matching
 from engine.take import SHAPES, Array
 
 if TYPE_CHECKING:
-    from engine.editing import Patch
-    from engine.spacetime.source import Source
+    from engine.editing import Patch, Source
 
 BEFORE_FRAMES, AFTER_FRAMES = 8, 24  # of the playhead, that are carried live: playing goes on while more is made
 AHEAD_FRAMES = 12  # how near the end of what is known the playhead may come before more is asked for
@@ -59,6 +55,7 @@ class Retargeting(QObject):
     method : MOVEMENT or LABELS
     matching : how movement is matched
     result : the whole take as the target plays it, until it is kept or dropped
+    solved : what the result came of
     share : how far the solve is, 0..1; None while nothing is solved
     opening : the name of the file that is being opened, or nothing
     suggestions : frames that are worth a label, best first
@@ -79,24 +76,29 @@ class Retargeting(QObject):
         self._session = session
         self.target, self.capture = Target(), None
         self.method, self.matching = MOVEMENT, Matching()
-        self.result: Carried | None = None
-        self.live: Carried | None = None
+        self.result: Retargeted | None = None
+        self.solved: Asked | None = None
+        self.live: Retargeted | None = None
         self.share: float | None = None
         self.opening = ""
         self.draft_pose: dict[str, float] = {}
         self.suggestions: list[int] = []
         self._capture_path: Path | None = None
         self._performance: Performance | None = None
-        self._solving: Carry | None = None
         self._live_for: tuple[object, ...] = ()
         self._live_span = (0, 0)
-        self._carrier, self._live_carrier = Carrier(), Carrier()
-        self._whole, self._short = (LatestWins(_run, name=name) for name in ("retarget", "retarget live"))
-        for thread in (self._whole, self._short):
+        self._solver = Runner(session, _carry_out, name="retarget")
+        self._solver.arrived.connect(self._finish)
+        self._solver.progress.connect(self._advance)
+        self._solver.failed.connect(self._solve_refused)
+        self._nearby = Runner(session, _carry_out, name="retarget live")
+        self._nearby.arrived.connect(self._show_live)
+        self._nearby.failed.connect(self.failed)
+        self._errands, self._shown_heads = (LatestWins(_run, name=name) for name in ("heads", "shown heads"))
+        for thread in (self._errands, self._shown_heads):
             thread.done.connect(self._deliver)
-        self._whole.failed.connect(self._refused)
-        self._short.failed.connect(self._short_refused)
-        self.progress.connect(self._advance)
+        self._errands.failed.connect(self._refused)
+        self._shown_heads.failed.connect(self._shown_refused)
         self._offered: Character | None = None
         self._kept_heads = KeptHeads(session, self.submit, self._follow)
         self.refused: tuple[Path, Reading] | None = None
@@ -132,7 +134,7 @@ class Retargeting(QObject):
     @property
     def idle(self) -> bool:
         """Whether nothing is being worked out."""
-        return self._whole.idle and self._short.idle
+        return all(each.idle for each in (self._solver, self._nearby, self._errands, self._shown_heads))
 
     def face_at(self, frame: int) -> Array | None:
         """Return the weights of the target at a frame, (52,), as far as they are known."""
@@ -204,7 +206,7 @@ class Retargeting(QObject):
     def show_on(self, path: Path | None) -> None:
         """Read a head to show the take on, None for the bundled one; it is the target where the user chose no other."""
         self.told.emit(f"reading {path.name}…" if path else "")
-        self._short.submit(Errand(lambda: opened(path) if path else Target(), self._take_shown), "head")
+        self._shown_heads.submit(Errand(lambda: opened(path) if path else Target(), self._take_shown))
 
     def _take_shown(self, offer: Target) -> None:
         self.told.emit("")
@@ -229,7 +231,7 @@ class Retargeting(QObject):
 
     def submit(self, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
         """Have work done off the GUI thread; `then` gets what it returns, and errors go to `failed`."""
-        self._whole.submit(Errand(work, then))
+        self._errands.submit(Errand(work, then))
 
     def _take_capture(self, made: Capture, path: Path) -> None:
         self.opening = ""
@@ -286,12 +288,12 @@ class Retargeting(QObject):
             return
         span = (max(0, playhead - BEFORE_FRAMES), min(frames, playhead + AFTER_FRAMES + 1))
         self._live_for, self._live_span = wanted, span
-        wish = Carry(self.performance, self.target, self.matching, span)
-        self._short.submit(Errand(lambda: self._live_carrier(wish, _nobody), lambda made: self._show_live(wish, made)))
+        self._nearby.ask(Asked(KIND, self.target.request(self.matching, span), self.performance))
 
-    def _show_live(self, wish: Carry, made: Carried) -> None:
-        if wish.performance is self._performance and wish.target.head is self.target.head:
-            self.live = made
+    def _show_live(self, asked: Asked, found: Retargeted) -> None:
+        assert isinstance(asked.inputs, RetargetRequest)
+        if asked.of is self._performance and asked.inputs.head is self.target.head:
+            self.live = found
             self.drawn.emit()
 
     def solve(self) -> None:
@@ -303,95 +305,84 @@ class Retargeting(QObject):
             self.failed.emit("No frame is labelled yet.", "Suggest frames, pose the target at each, and label it.")
             return
         self.cancel()
-        wish = Carry(self.performance, self.target, self.matching, from_labels=self.method == LABELS)
-        self._solving, self.share = wish, 0.0
-        self.submit(lambda: self._stoppable(wish), lambda made: self._finish(wish, made))
+        self.share = 0.0
+        self._solver.ask(self._asked())
         self.changed.emit()
 
-    def _stoppable(self, wish: Carry) -> Carried | None:
-        try:
-            return self._carrier(wish, self.progress.emit)
-        except Stopped:
-            return None
+    def _asked(self) -> Asked:
+        """Return the wish to have the whole performance on the target."""
+        target, movement = self.target, self.target.request(self.matching)
+        request = LabelRequest(target.labels, movement) if self.method == LABELS else movement
+        also = {
+            "target": str(target.path or ""),
+            "source": self.performance.take.name,
+            "method": self.method,
+            "labels": {str(frame): dict(pose) for frame, pose in target.labels.items()},
+            "reading": target.reading.stored(),
+        }
+        return Asked(KIND, request, self.performance, f"carry to {movement.head.name}", also=also)
 
-    def _finish(self, wish: Carry, made: Carried | None) -> None:
-        if wish is self._solving:
-            self._solving, self.share, self.result = None, None, made
+    def _finish(self, asked: Asked, found: Retargeted) -> None:
+        if self._solver.is_last(asked):
+            self._solver.drop()
+            self.share, self.result, self.solved = None, found, asked
             self.changed.emit()
 
     def _advance(self, share: float) -> None:
-        if self._solving is not None:
+        if self._solver.last is not None:
             self.share = share
+            self.progress.emit(share)
 
     def cancel(self) -> bool:
         """Stop the solve under way; returns whether there was one."""
-        if self._solving is None:
+        if self._solver.last is None:
             return False
-        self._solving.stop.set()
-        self._solving = self.share = None
+        self._solver.drop()
+        self.share = None
         self.changed.emit()
         return True
 
     def keep(self) -> None:
         """Make what was carried the take, on its head, as one undo step."""
-        result, target = self.result, self.target
-        if result is None or target.head is None:
+        result, head, take = self.result, self.target.head, self._session.document.take
+        if result is None or head is None:
             return
-        session, head = self._session, target.head
-        take = session.document.take
-        inputs = {
-            "target": str(target.path or ""),
-            "source": self.capture.take.name if self.capture else take.name,
-            "method": self.method,
-            "labels": {str(frame): dict(pose) for frame, pose in target.labels.items()},
-            "places": dict(target.places),
-            "reading": target.reading.stored(),
-            "alpha": self.matching.alpha,
-            "beta": self.matching.beta,
-            "closure": self.matching.closure,
-        }
-
-        def work() -> Patch:
-            from engine.editing import Patch
-
-            return Patch.between(take, take.with_weights(result.take.weights), (0, len(take)))
+        asked = self.solved or self._asked()
 
         def then(patch: Patch) -> None:
-            if session.document.take is take:
-                self._kept_heads.know(inputs, None if head is bundled() else head)
-                session.document.undo.push(
-                    EditCommand.of(session.document, patch, f"carry to {head.name}", kind=KIND, inputs=inputs)
-                )
+            if self._session.document.take is take:
+                self._kept_heads.know(asked.stored, None if head is bundled() else head)
+                self._solver.keep(asked, patch)
 
-        self.submit(work, then)
+        self.submit(lambda: result.patch(take), then)
 
-    def show(self, result: Carried | None) -> None:
+    def show(self, result: Retargeted | None, solved: Asked | None = None) -> None:
         """Show what was carried before, or nothing."""
-        self.result = result
+        self.result, self.solved = result, solved
         self.changed.emit()
 
     def drop(self) -> None:
         """Keep nothing of what was carried."""
-        self.result = None
+        self.result = self.solved = None
         self._live_for = ()
         self.ask_live()
         self.changed.emit()
 
     def close(self) -> None:
         """Stop what is under way and end the threads."""
-        self._session.document.undo.indexChanged.disconnect(
-            self._follow
-        )  # clearing itself at its end, it would still tell us
-        self.cancel()
-        self._whole.stop()
-        self._short.stop()
+        undo = self._session.document.undo
+        undo.indexChanged.disconnect(self._follow)  # clearing itself at its end, it would still tell us
+        for runner in (self._solver, self._nearby):
+            runner.close()
+        for thread in (self._errands, self._shown_heads):
+            thread.stop()
 
     # --- within
 
     def _begin_anew(self) -> None:
         """Forget what another source, target or setting came to."""
         self.cancel()
-        self.result, self.draft_pose = None, {}
+        self.result, self.solved, self.draft_pose = None, None, {}
         self.ask_live()
         self.changed.emit()
 
@@ -410,11 +401,16 @@ class Retargeting(QObject):
     def _refused(self, request: object, sentence: str, advice: str) -> None:
         if self.opening and self._opening_head is not None and self._opening_head[0] is not None:
             self.refused = self._opening_head[0], self._opening_head[1]
-        self._solving, self.share, self.opening, self._opening_head = None, None, "", None
+        self.opening, self._opening_head = "", None
         self.failed.emit(sentence, advice)
         self.changed.emit()
 
-    def _short_refused(self, request: object, sentence: str, advice: str) -> None:
+    def _solve_refused(self, sentence: str, advice: str) -> None:
+        self.share = None
+        self.failed.emit(sentence, advice)
+        self.changed.emit()
+
+    def _shown_refused(self, request: object, sentence: str, advice: str) -> None:
         self.told.emit("")
         self.failed.emit(sentence, advice)
 
@@ -440,5 +436,9 @@ def _run(errand: Errand) -> Any:
     return errand.work()
 
 
-def _nobody(_: float) -> None:
-    pass
+def _carry_out(asked: Asked, tell: Tell) -> Retargeted:
+    assert isinstance(asked.of, Performance)
+    if isinstance(asked.inputs, LabelRequest):
+        return retarget_from_labels(asked.of, asked.inputs, tell)
+    assert isinstance(asked.inputs, RetargetRequest)
+    return retarget(asked.of, asked.inputs, tell)

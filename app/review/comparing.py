@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
 from app.session import Change, Session
+from engine.editing import Patch
 from engine.errors import EditError
 from engine.formats import read_take
 from engine.review.align import Alignment, align, on_clock_of
 from engine.review.changes import Change as Difference
 from engine.review.changes import Edited, compare
 from engine.take import Take
-
-if TYPE_CHECKING:
-    from engine.editing import Patch
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +132,5 @@ def pair(before: Take, after: Take) -> Pair:
         if not common.any():
             raise EditError(f"{before.name} and {after.name} have no frame in common.")
         before = Take(weights, after.fps, name=before.name, start_s=after.start_s, lost=after.lost & ~common)
-    from engine.editing import Patch  # which loads torch: the window should be seen first
-
     patch = Patch.between(before, replace(after, origin=before.origin), (0, len(after)))
     return Pair(before, patch, after.name, alignment, same_clock)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -96,10 +97,10 @@ class Editor:
     def _clean(self, request: CleanRequest) -> Patch:
         if not 0.0 <= request.strength <= 1.0:
             raise EditError(f"A strength of {request.strength:g} is not between 0 and 1.")
-        (start, stop), full = request.frames, self.cleaned(request.frames).take
+        (start, stop), cleaned = request.frames, self.cleaned(request.frames)
         raw = self.take.weights[start:stop]
-        mixed = self.take.with_rows(start, raw + request.strength * (full.weights[start:stop] - raw))
-        return Patch.between(self.take, mixed, request.frames)
+        mixed = self.take.with_rows(start, raw + request.strength * (cleaned.take.weights[start:stop] - raw))
+        return replace(Patch.between(self.take, mixed, request.frames), lag_ms=cleaned.lag_ms)
 
     def _pin(self, request: PinRequest) -> Patch:
         from engine.spacetime.pin import PinSolver, Spreading

@@ -29,7 +29,7 @@ GONE = EditError("This edit does not say what it was made from.", "Make it anew.
 
 
 class Request(Protocol):
-    """What all requests have.
+    """What all requests have: those of `heads` too.
 
     Attributes
     ----------
@@ -39,8 +39,8 @@ class Request(Protocol):
     verb: ClassVar[str]
 
     @property
-    def frames(self) -> Frames:
-        """The frames that it is about."""
+    def frames(self) -> Frames | None:
+        """The frames that it is about; None for all."""
 
     def stored(self) -> dict[str, Any]:
         """Return all that it says, as JSON can hold it."""

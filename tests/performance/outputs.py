@@ -15,7 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from engine.formats.capture import Markers
+from engine.formats.markers.capture import Markers
 from PySide6.QtCore import QEventLoop
 from PySide6.QtWidgets import QApplication
 
@@ -188,7 +188,9 @@ def in_the_window(take: Take, folder: Path) -> None:
     shown.step("fill", shown.filled)
     shown.step("fill again", shown.filled_again)
     shown.step("retarget", lambda: shown.retargeted(folder / "broad.npz"))
-    window.hide()
+    session.document.undo.setClean()
+    window.close()
+    shown.until(lambda: window.closed)
 
 
 def main() -> int:
