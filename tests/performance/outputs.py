@@ -15,7 +15,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from engine.formats.markers.capture import Markers
 from PySide6.QtCore import QEventLoop
 from PySide6.QtWidgets import QApplication
 
@@ -27,6 +26,7 @@ from engine.formats import labels as label_files
 from engine.formats import read_take
 from engine.formats.labels import LabelFile
 from engine.formats.markers import write as write_markers
+from engine.formats.markers.capture import Markers
 from engine.project import Span
 from engine.spacetime.layout import standard
 from engine.take import SHAPE_INDEX, SHAPES, Take
