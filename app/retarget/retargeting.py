@@ -15,20 +15,12 @@ from app.retarget.capture import Capture, captured
 from app.retarget.carry import Errand, Pose, Target, opened, posed, with_markers
 from app.retarget.commands import TargetCommand
 from app.retarget.kept import KeptHeads
+from app.retarget.solving import KIND, LABELS, MOVEMENT, carry_out, whole
 from app.session import Change, Session
 from app.session.asked import Asked
-from app.session.edits import Runner, Tell
+from app.session.edits import Runner
 from engine.character import Character, bundled
-from engine.editing import (
-    MARKERS,
-    LabelRequest,
-    Matching,
-    Performance,
-    Retargeted,
-    RetargetRequest,
-    retarget,
-    retarget_from_labels,
-)
+from engine.editing import MARKERS, Matching, Performance, Retargeted, RetargetRequest
 from engine.formats.characters.reading import Reading
 from engine.take import SHAPES, Array
 
@@ -37,8 +29,6 @@ if TYPE_CHECKING:
 
 BEFORE_FRAMES, AFTER_FRAMES = 8, 24  # of the playhead, that are carried live: playing goes on while more is made
 AHEAD_FRAMES = 12  # how near the end of what is known the playhead may come before more is asked for
-MOVEMENT, LABELS = "movement", "labels"
-KIND = "retarget"  # of the edits that put a take on another head
 
 
 class Retargeting(QObject):
@@ -87,11 +77,11 @@ class Retargeting(QObject):
         self._performance: Performance | None = None
         self._live_for: tuple[object, ...] = ()
         self._live_span = (0, 0)
-        self._solver = Runner(session, _carry_out, name="retarget")
+        self._solver = Runner(session, carry_out, name="retarget")
         self._solver.arrived.connect(self._finish)
         self._solver.progress.connect(self._advance)
         self._solver.failed.connect(self._solve_refused)
-        self._nearby = Runner(session, _carry_out, name="retarget live")
+        self._nearby = Runner(session, carry_out, name="retarget live")
         self._nearby.arrived.connect(self._show_live)
         self._nearby.failed.connect(self.failed)
         self._errands, self._shown_heads = (LatestWins(_run, name=name) for name in ("heads", "shown heads"))
@@ -306,21 +296,8 @@ class Retargeting(QObject):
             return
         self.cancel()
         self.share = 0.0
-        self._solver.ask(self._asked())
+        self._solver.ask(whole(self.performance, self.target, self.matching, self.method))
         self.changed.emit()
-
-    def _asked(self) -> Asked:
-        """Return the wish to have the whole performance on the target."""
-        target, movement = self.target, self.target.request(self.matching)
-        request = LabelRequest(target.labels, movement) if self.method == LABELS else movement
-        also = {
-            "target": str(target.path or ""),
-            "source": self.performance.take.name,
-            "method": self.method,
-            "labels": {str(frame): dict(pose) for frame, pose in target.labels.items()},
-            "reading": target.reading.stored(),
-        }
-        return Asked(KIND, request, self.performance, f"carry to {movement.head.name}", also=also)
 
     def _finish(self, asked: Asked, found: Retargeted) -> None:
         if self._solver.is_last(asked):
@@ -347,7 +324,7 @@ class Retargeting(QObject):
         result, head, take = self.result, self.target.head, self._session.document.take
         if result is None or head is None:
             return
-        asked = self.solved or self._asked()
+        asked = self.solved or whole(self.performance, self.target, self.matching, self.method)
 
         def then(patch: Patch) -> None:
             if self._session.document.take is take:
@@ -434,11 +411,3 @@ class Retargeting(QObject):
 
 def _run(errand: Errand) -> Any:
     return errand.work()
-
-
-def _carry_out(asked: Asked, tell: Tell) -> Retargeted:
-    assert isinstance(asked.of, Performance)
-    if isinstance(asked.inputs, LabelRequest):
-        return retarget_from_labels(asked.of, asked.inputs, tell)
-    assert isinstance(asked.inputs, RetargetRequest)
-    return retarget(asked.of, asked.inputs, tell)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.retarget.carry import Target
-from app.retarget.retargeting import LABELS, Retargeting
+from app.retarget.retargeting import Retargeting
+from app.retarget.solving import LABELS
 from app.session import Session
 from app.session.sides import Dot, Side
 from engine.character import Character, bundled
