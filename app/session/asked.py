@@ -75,7 +75,10 @@ class Asked:
         inputs = self.inputs.stored()
         if _length(inputs) > LARGEST_KEPT:
             inputs = {name: value for name, value in inputs.items() if not _length(value)}
-        return {**self.also, "request": self.inputs.verb, **inputs}
+        together = (
+            {"variants": self.variants} if self.variants > 1 else {}
+        )  # networks round by how many they make at once
+        return {**self.also, "request": self.inputs.verb, **together, **inputs}
 
 
 def _length(stored: Any) -> int:
