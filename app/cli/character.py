@@ -144,13 +144,7 @@ def drive(
     require_ending(out)
     head = _head(mesh, unit=unit, up=up, facing=facing)
     performance = performance_of(
-        markers,
-        neutral=neutral,
-        unit=None,
-        fps=fps,
-        sides=sides,
-        changes=pairs(marker or []),
-        placed=points is not None,
+        markers, neutral=neutral, fps=fps, sides=sides, marker=marker, placed=points is not None
     )
     performance.show()
     followed = _followed(head, performance, points)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -59,10 +60,10 @@ def performance_of(
     path: Path,
     *,
     neutral: int,
-    unit: str | None,
     fps: float | None,
     sides: str,
-    changes: dict[str, str] | None = None,
+    unit: str | None = None,
+    marker: Sequence[str] | None = None,
     placed: bool = False,
 ) -> Carried:
     """Read a take or a capture; raises `EngineError`.
@@ -71,10 +72,10 @@ def performance_of(
     ----------
     path : the file
     neutral : for a capture, a frame in which the face is at rest
-    unit : for a capture, instead of what the file says
     fps : instead of what the file says
     sides : of a take, as `--sides` has it
-    changes : landmarks by marker that were corrected
+    unit : for a capture, instead of what the file says
+    marker : corrections of what markers were taken for, `name=landmark` each
     placed : whether a landmark file says where the markers are: their names need not be understood then
     """
     from engine.character import bundled
@@ -82,6 +83,7 @@ def performance_of(
     from engine.formats import markers
     from engine.formats.characters.marker_places import match_markers
 
+    changes = pairs(marker or [])
     if path.suffix.lower() not in markers.ENDINGS or is_take(path):
         if changes:
             raise EditError("A take has no markers to correct.", "Leave out --marker.")
@@ -92,7 +94,7 @@ def performance_of(
     if placed:
         source = capture_of(capture, neutral_frame=neutral)
         return Carried(Performance(source.take, bundled(), source))
-    table = match_markers(capture.positions[neutral], capture.names).corrected(changes or {})
+    table = match_markers(capture.positions[neutral], capture.names).corrected(changes)
     source = capture_of(capture, neutral_frame=neutral, turn=table.turn, landmarks=table.landmarks)
     return Carried(Performance(source.take, bundled(), source), table)
 
@@ -107,7 +109,7 @@ def is_take(path: Path) -> bool:
         raise unread(path, error) from error
 
 
-def pairs(texts: list[str]) -> dict[str, str]:
+def pairs(texts: Sequence[str]) -> dict[str, str]:
     """Return what `name=value` texts say, by name; raises `EditError` for another text."""
     found = {}
     for text in texts:
