@@ -77,7 +77,7 @@ def edit(
 ) -> None:
     """Change one control over a range of frames; the whole face follows."""
     from engine.controls import ALL_CONTROLS, control_index
-    from engine.editing import Change, edit_control, parse_frames
+    from engine.editing import Change, ControlRequest, parse_frames, set_control
     from engine.shortfall import shortfalls
 
     kinds: dict[Change, float | None] = {"set": set_, "add": add, "scale": scale}
@@ -87,7 +87,8 @@ def edit(
     opened = open_take(take, fps, sides)
     column, (start, stop) = control_index(control), parse_frames(frames, opened)
     believability = 0.0 if exact else believability
-    patch = edit_control(opened, control, (start, stop), *given[0], believability=believability).settled(opened)
+    asked = ControlRequest(control, (start, stop), *given[0], believability=believability)
+    patch = set_control(opened, asked).settled(opened)
     save_take(patch.apply(opened), out, write_sides)
     reached = patch.reached[start - patch.start : stop - patch.start, column]
     unit = ALL_CONTROLS[column].unit

@@ -1,102 +1,27 @@
-"""One function per verb of the user: what the window and the command line call."""
+"""Drags: curves asked of the face's controls, and the face that meets them (BSBS19 section 4)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
-import torch
 
 from engine.controls import ALL_CONTROLS, CONTROLS, bundled_measurer, control_index
 from engine.easing import ease
+from engine.editing.requests import DEFAULT_BELIEVABILITY, Change
 from engine.errors import EditError
 from engine.extended import bundled_face
-from engine.regress import infer
-from engine.regress.plausibility import DEFAULT_BELIEVABILITY
-from engine.regress.solve import Solver, Stretch
+from engine.patch import Patch
 from engine.take import SHAPES, Array, Mask, Take
 from engine.words import counted
 
-Change = Literal["set", "add", "scale"]
+if TYPE_CHECKING:
+    from engine.regress.infer import Regressor
+    from engine.regress.solve import Stretch
+
 EASE_S = 1 / 6  # over which a change comes and goes beside its frames
 FARTHEST_MM = 1000.0  # more than this is a slip; far more would overflow
-
-
-@dataclass(frozen=True, eq=False)
-class Patch:
-    """New weights for a range of frames; everything outside stays as it is, bit for bit, but for lost frames beside it.
-
-    Attributes
-    ----------
-    start : first frame
-    weights : (frames, 52)
-    asked : (frames, 16) control curves that were asked for, NaN where nothing was
-    reached : (frames, 16) what the new face does
-    granted : (frames, 16) what was asked as far as it is believable; None where nobody asked for a curve
-    lost : (frames,) bool, the frames that are lost from now on; None leaves it to `Take.with_rows`
-    """
-
-    start: int
-    weights: Array
-    asked: Array
-    reached: Array
-    granted: Array | None = None
-    lost: Mask | None = None
-
-    @property
-    def stop(self) -> int:
-        """The frame after the last."""
-        return self.start + len(self.weights)
-
-    @classmethod
-    def between(cls, before: Take, after: Take, frames: tuple[int, int]) -> Patch:
-        """Return the patch that turns one take into another over a half-open range; nothing was asked of controls.
-
-        The range is grown over the lost frames beside it, which follow what changed.
-        """
-        if before.weights.shape != after.weights.shape:
-            raise EditError(f"The new weights have {counted(len(after), 'frame')}, the take {len(before)}.")
-        first, last = before.with_lost_beside(*frames)
-        rows = np.asarray(after.weights[first:last])
-        reached = bundled_face().measure(rows)
-        return cls(first, rows, np.full_like(reached, np.nan), reached, lost=after.lost[first:last])
-
-    def apply(self, take: Take) -> Take:
-        """Return the take with these weights in place."""
-        if self.lost is None:
-            return take.with_rows(self.start, self.weights)
-        return take.with_exact_rows(self.start, self.weights, self.lost)
-
-    def settled(self, take: Take) -> Patch:
-        """Return the patch over every frame of a take that it changes, which says of each whether it is lost."""
-        if self.lost is not None:
-            return self
-        whole = Patch.between(take, self.apply(take), (self.start, self.stop))
-        asked, reached = whole.asked.copy(), whole.reached.copy()
-        inside = slice(self.start - whole.start, self.stop - whole.start)
-        same = (whole.weights[inside] == self.weights).all(axis=1)[:, None]
-        asked[inside] = np.where(same, self.asked, asked[inside])
-        reached[inside] = np.where(same, self.reached, reached[inside])
-        granted = None
-        if self.granted is not None:
-            granted = np.full_like(asked, np.nan)
-            granted[inside] = self.granted
-        return Patch(whole.start, whole.weights, asked, reached, granted, whole.lost)
-
-
-def parse_frames(text: str, take: Take) -> tuple[int, int]:
-    """Return the half-open range that `A:B` names; raises `EditError` when it is not within the take."""
-    try:
-        start, stop = (int(part) for part in text.split(":"))
-    except ValueError:
-        raise EditError(
-            f"{text!r} is not a range of frames.", "Write the first frame and the one after the last: 40:60."
-        ) from None
-    if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
-    return start, stop
 
 
 def ask(
@@ -142,10 +67,13 @@ class Dragger:
         self,
         take: Take,
         controls: Array | None = None,
-        regressor: infer.Regressor | None = None,
+        regressor: Regressor | None = None,
         *,
         asked: Array | None = None,
     ) -> None:
+        from engine.regress import infer  # here, since torch takes a second to load
+        from engine.regress.solve import Solver
+
         self.take = take
         whole = controls is not None and controls.shape[1] == len(ALL_CONTROLS)
         self.controls = controls if whole and controls is not None else bundled_face().measure(take.weights)
@@ -184,26 +112,15 @@ class Dragger:
         return None if self._asked is None else ~np.isnan(self._asked[stretch.start : stretch.stop])
 
 
-def edit_control(
-    take: Take,
-    control: str,
-    frames: tuple[int, int],
-    change: Change,
-    amount: float,
-    *,
-    believability: float = DEFAULT_BELIEVABILITY,
-) -> Patch:
-    """Change one control over a range of frames and bend the face after it; the verb behind `retake edit`."""
-    dragger = Dragger(take)
-    start, asked = ask(dragger.controls, control, frames, change, amount, fps=take.fps)
-    return dragger.drag(start, asked, believability=believability)
-
-
 @lru_cache(maxsize=1)
 def warm_up() -> None:
     """Load the networks and run them once, so that the first drag is as fast as the next.
 
     They are so small that a second thread costs more than it brings, five times as much on a busy machine.
     """
+    import torch
+
+    from engine.regress import infer
+
     torch.set_num_threads(1)
     infer.bundled().infer(np.tile(bundled_measurer().measure(np.zeros((1, len(SHAPES)))), (64, 1)))
