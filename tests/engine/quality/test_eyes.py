@@ -92,8 +92,8 @@ def test_a_blink_that_stays_farther_open_than_most_is_flagged_at_its_bottom() ->
         gap = blinking(*SHUT)
         gap[120] -= dip
         assert bool(of(unclosed, lids(gap))) == flagged
-    weak = [(at, 4.0) for at, _ in SHUT]
-    assert not of(unclosed, lids(blinking(*weak, (120, 6.0)))) and of(unclosed, lids(blinking(*weak, (120, 7.5))))
+    weak = [(at, 3.5) for at, _ in SHUT]
+    assert not of(unclosed, lids(blinking(*weak, (120, 6.4)))) and of(unclosed, lids(blinking(*weak, (120, 6.6))))
 
 
 def test_the_lid_that_is_farther_open_counts() -> None:
