@@ -160,16 +160,16 @@ def test_a_pop_beside_lost_frames_or_the_ends_is_none(gone: int, flagged: bool) 
     assert of(pops, only(np.where(np.arange(60)[:, None] < 3, 0.2, 0.6) * np.ones(len(SHAPES)))) != []
 
 
-def test_trembling_is_measured_as_its_deviation() -> None:
-    rng = np.random.default_rng(0)
-    for deviation in (0.06, 0.1):
-        weights = np.full((600, len(SHAPES)), 0.5)
-        weights[:, 30] += rng.normal(0, deviation, 600)
-        flags = list(jitter(only(weights), 0, 600))
-        assert sum(flag.stop - flag.start for flag in flags) > 500
-        assert all(flag.start % 15 == flag.stop % 15 == 0 for flag in flags)
-        told = np.mean([float(flag.sentence.split(" by ")[1].split()[0]) for flag in flags])
-        assert told == pytest.approx(deviation, rel=0.4)
+def test_trembling_is_measured_as_the_deviation_of_noise_with_such_fourth_differences() -> None:
+    for by in (0.02, 0.05):
+        weights = np.full((300, len(SHAPES)), 0.5)
+        weights[:, 30] += by * (-1.0) ** np.arange(300)
+        (flag,) = jitter(only(weights), 0, 300)
+        told = float(flag.sentence.split(" by ")[1].split()[0])
+        assert told == pytest.approx(
+            16 * by / np.sqrt(70) / 0.8, abs=6e-4
+        )  # 1 -4 6 -4 1; the mean of |x| is 0.8 deviations
+        assert (flag.start, flag.stop) == (0, 300) and "10.00 s" in flag.sentence
 
 
 @pytest.mark.parametrize(("deviation", "share", "flagged"), [
