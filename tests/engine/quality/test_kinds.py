@@ -42,7 +42,7 @@ def test_a_verdict_needs_no_frame_beyond_its_reach(kind: Kind) -> None:
     for seed in range(3):
         seen = troubled(seed)
         reach = kind.reach(seen)
-        block = jitter_block(seen.fps) if kind.name == "jitter" else 1
+        block = jitter_block(seen) if kind.name == "jitter" else 1
         for low, high in ((90, 150), (200, 201), (305, 391)):
             first = (low - reach) // block * block
             last = min(seen.length, -(-(high + reach) // block) * block)

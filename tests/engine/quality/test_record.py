@@ -9,7 +9,7 @@ from engine.quality.record import LEAST, Flag, in_order, lasting, weight_of
 def test_a_flag_weighs_least_at_its_threshold_and_one_from_its_full_amount_on(amount: float, weight: float) -> None:
     assert LEAST == 0.2
     assert weight_of(amount, 3.0, 7.0) == pytest.approx(weight)
-    assert weight_of(-amount, -3.0, -7.0) == pytest.approx(weight)  # thresholds may go down
+    assert weight_of(amount, 5.0, 5.0) == 1.0
 
 
 def test_flags_come_by_their_first_frame_then_by_kind() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from engine.anatomy import EXCLUSIVE, pairs
 from engine.character import bundled
-from engine.formats.livelink_sides import exchange
+from engine.formats.livelink.sides import exchange
 from engine.quality import Seen
 from engine.quality.shape import crossed_mm, crossing, impossible, out_of_range, swapped
 from engine.take import SHAPE_INDEX, SHAPES, Array
