@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 
 from engine import project
-from engine.formats.base.lock import FileLock
 from engine.project import Contents, DisplacedError, InUseError, Project, database
 from engine.take import SHAPES, Take
 from tests.engine.project.projects import an_edit, reopened, same
@@ -158,44 +157,6 @@ def owned_elsewhere(lock: Path, host: str) -> None:
     text = "".join(f"{name}={value}\n" if value else f"{name}\n" for name, value in fields.items())
     (made := lock.with_suffix(".made")).write_text(text)
     os.replace(made, lock)
-
-
-def test_a_lock_of_another_computer_counts_while_it_is_refreshed(
-    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "a.retake"
-    held = FileLock(path)
-    owned_elsewhere(lock := tmp_path / ".a.retake.lock", "other")
-    turns = iter(range(1, 10**6))
-    monkeypatch.setattr("engine.formats.base.lock.time.sleep", lambda _: os.utime(lock, (next(turns), next(turns))))
-    with pytest.raises(InUseError, match="in Retake on other"):
-        FileLock(path)
-    assert not held.held  # as its own computer would find if it slept: somebody else's name is in it
-    held.release()
-    assert lock.exists()  # and it is not removed
-
-
-def test_a_lock_that_another_computer_left_is_taken_over_after_a_lease(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path, now = tmp_path / "a.retake", [0.0]
-    monkeypatch.setattr("time.monotonic", lambda: now[0])
-    monkeypatch.setattr("engine.formats.base.lock.time.sleep", lambda seconds: now.__setitem__(0, now[0] + seconds))
-    left = FileLock(path)
-    left._lease._stop_heartbeat()
-    owned_elsewhere(tmp_path / ".a.retake.lock", "other")
-    os.utime(tmp_path / ".a.retake.lock", (9e9, 9e9))  # its clock is far ahead
-    taken = FileLock(path)
-    assert taken.held and not left.held
-    taken.release()
-
-
-def test_a_lock_without_a_name_as_a_power_cut_leaves_it_is_nobodys(tmp_path: Path) -> None:
-    (tmp_path / ".a.retake.lock").touch()
-    lock = FileLock(tmp_path / "a.retake")
-    assert lock.held
-    lock.release()
-    assert others(tmp_path) == []
 
 
 def test_who_lost_the_lock_while_asleep_writes_no_more(contents: Contents, tmp_path: Path) -> None:
