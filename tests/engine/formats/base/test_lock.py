@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,8 +11,7 @@ from pathlib import Path
 import pytest
 
 from engine.formats.base.atomic import write_bytes
-from engine.formats.base.lock import FileLock
-from engine.project import Contents, InUseError
+from engine.formats.base.lock import FileLock, InUseError, drop_abandoned
 
 
 def test_a_lock_that_a_kill_left_goes_with_the_next_write_and_others_stay(
@@ -45,7 +45,7 @@ def owned_elsewhere(lock: Path, host: str) -> None:
 
 
 def test_a_lock_of_another_computer_counts_while_it_is_refreshed(
-    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.retake"
     held = FileLock(path)
@@ -80,3 +80,63 @@ def test_a_lock_without_a_name_as_a_power_cut_leaves_it_is_nobodys(tmp_path: Pat
     assert lock.held
     lock.release()
     assert others(tmp_path) == []
+
+
+def test_one_program_has_a_file_at_a_time_and_gives_it_back(tmp_path: Path) -> None:
+    path = tmp_path / "a.retake"
+    first = FileLock(path)
+    assert first.held and others(tmp_path) == [".a.retake.lock"]
+    with pytest.raises(InUseError, match=r"a\.retake is open in another Retake"):
+        FileLock(path)
+    first.release()
+    assert not first.held and others(tmp_path) == []
+    again = FileLock(path)
+    assert again.held and not first.held
+    again.release()
+
+
+def test_a_folder_that_is_not_there_gets_no_lock(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        FileLock(tmp_path / "nowhere" / "a.retake")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("length", "hashed"), [(249, False), (250, True), (255, True)])
+def test_the_lock_of_a_long_name_is_called_by_its_hash(tmp_path: Path, length: int, hashed: bool) -> None:
+    path = tmp_path / ("x" * (length - len(".retake")) + ".retake")
+    lock = FileLock(path)
+    (name,) = others(tmp_path)
+    assert lock.held and len(name) <= 255
+    assert bool(re.fullmatch(r"\.[0-9a-f]{16}\.lock", name)) == hashed
+    lock.release()
+
+
+@pytest.mark.parametrize(
+    ("name", "dropped"),
+    [
+        (".a.retake.lock", True),
+        (".take.partial.csv.lock", True),
+        (".take.partial7.csv.lock", True),
+        (".0123456789abcdef.lock", True),
+        (".0123456789abcde.lock", False),
+        (".other.lock", False),
+        ("a.retake.lock", False),
+    ],
+)
+def test_only_locks_of_our_own_names_are_looked_at(tmp_path: Path, name: str, dropped: bool, monkeypatch) -> None:
+    monkeypatch.setattr("engine.formats.base.lock.time.sleep", lambda _: None)
+    (tmp_path / name).touch()
+    drop_abandoned(tmp_path / name)
+    assert (tmp_path / name).exists() != dropped
+
+
+def test_a_lock_that_gets_its_name_within_a_moment_stays(tmp_path: Path, monkeypatch) -> None:
+    lock = tmp_path / ".a.retake.lock"
+    lock.touch()
+    monkeypatch.setattr("engine.formats.base.lock.time.sleep", lambda _: os.utime(lock, (5, 5)))
+    drop_abandoned(lock)
+    assert lock.exists()
+    held = FileLock(tmp_path / "b.retake")
+    drop_abandoned(tmp_path / ".b.retake.lock")
+    assert held.held
+    held.release()
