@@ -9,6 +9,7 @@ survives: it is printed with its place and its change. Some survivors change not
 from __future__ import annotations
 
 import ast
+import importlib
 import multiprocessing
 import os
 import random
@@ -18,6 +19,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, NoReturn
@@ -48,6 +50,7 @@ OPPOSITES: dict[type[ast.AST], tuple[type[ast.AST], ...]] = {
     ast.Sub: (ast.Add,),
     ast.USub: (ast.UAdd,),
 }
+SHORT = (ast.expr, ast.keyword, ast.Assign, ast.AnnAssign, ast.AugAssign, ast.Return)  # what a change is shown in
 TYPES = ("annotation", "returns", "decorator_list")  # fields of a node whose content does not run as it is written
 
 
@@ -79,28 +82,26 @@ class Site:
     choice: int
 
 
-def modules_of(paths: Iterable[Path]) -> list[Path]:
-    """Return the modules at or below paths of the project, without those that train, measure and build."""
+def modules_of(paths: Iterable[Path], root: Path = ROOT) -> list[Path]:
+    """Return the modules at or below paths of a project, without those that train, measure and build."""
     found: set[Path] = set()
     for path in paths:
-        files = [path] if path.suffix == ".py" else (ROOT / path).rglob("*.py")
-        found |= {(ROOT / file).relative_to(ROOT) for file in files}
+        files = [path] if path.suffix == ".py" else (root / path).rglob("*.py")
+        found |= {(root / file).relative_to(root) for file in files}
     return sorted(module for module in found if APART not in module.parents)
 
 
-def sites_of(module: Path) -> list[Site]:
+def sites_of(module: Path, root: Path = ROOT) -> list[Site]:
     """Return the places of a module that can be changed, one for each way to change it."""
-    nodes = _nodes(ast.parse((ROOT / module).read_text(encoding="utf-8")))
+    nodes = _nodes(ast.parse((root / module).read_text(encoding="utf-8")))
     return [
-        Site(module, number, choice)
-        for number, (node, _) in enumerate(nodes)
-        for choice in range(len(_changes(node)))
+        Site(module, number, choice) for number, (node, _) in enumerate(nodes) for choice in range(len(_changes(node)))
     ]
 
 
-def mutant_at(site: Site) -> Mutant:
+def mutant_at(site: Site, root: Path = ROOT) -> Mutant:
     """Return the module with the change at a site."""
-    tree = ast.parse((ROOT / site.module).read_text(encoding="utf-8"))
+    tree = ast.parse((root / site.module).read_text(encoding="utf-8"))
     node, around = _nodes(tree)[site.number]
     before = ast.unparse(around)
     name, index, changed = _changes(node)[site.choice]
@@ -115,11 +116,11 @@ def _nodes(tree: ast.AST) -> list[tuple[ast.AST, ast.AST]]:
     """Return the nodes that run, each with the smallest expression around it that says something."""
 
     def below(node: ast.AST, around: ast.AST) -> Iterator[tuple[ast.AST, ast.AST]]:
-        yield node, around if isinstance(node, ast.Constant) else node
+        yield node, around if isinstance(node, ast.Constant) and isinstance(around, SHORT) else node
         for name, field in ast.iter_fields(node):
             for child in field if isinstance(field, list) else [field]:
                 if isinstance(child, ast.AST) and name not in TYPES:
-                    yield from below(child, node if isinstance(node, ast.expr | ast.stmt) else around)
+                    yield from below(child, around if isinstance(node, ast.Tuple | ast.Slice) else node)
 
     return list(below(tree, tree))
 
@@ -139,17 +140,19 @@ def _changes(node: ast.AST) -> list[tuple[str, int | None, object]]:
     return []
 
 
-def tests_of(module: Path) -> list[Path]:
-    """Return the tests that mirror a module; those of `y_z.py` are not those of `y.py`."""
-    folder = Path("tests") / module.parent
-    name, siblings = module.stem, {file.stem for file in (ROOT / module.parent).iterdir()}
+def tests_of(module: Path, root: Path = ROOT) -> list[Path]:
+    """Return the tests that mirror a module; those of `y_z.py` are not those of `y.py`.
+
+    A package is mirrored by the tests of its name, within its folder of tests or beside it.
+    """
+    folder, name, beside = root / "tests" / module.parent, module.stem, root / module.parent
+    folders = [folder]
     if name == "__init__":
-        folder, name = folder.parent, module.parent.name
-        siblings = {file.stem for file in (ROOT / module.parents[1]).iterdir()}
-    longer = [f"test_{other}" for other in siblings if other.startswith(f"{name}_")]
-    found = [ROOT / folder / f"test_{name}.py", *(ROOT / folder).glob(f"test_{name}_*.py")]
+        folders, name, beside = [folder, folder.parent], module.parent.name, beside.parent
+    longer = [f"test_{file.stem}" for file in beside.iterdir() if file.stem.startswith(f"{name}_")]
+    found = [file for place in folders for file in (place / f"test_{name}.py", *place.glob(f"test_{name}_*.py"))]
     kept = [file for file in found if not any(file.stem == long or file.stem.startswith(f"{long}_") for long in longer)]
-    return sorted(file.relative_to(ROOT) for file in kept if file.exists())
+    return sorted(file.relative_to(root) for file in kept if file.exists())
 
 
 class Copy:
@@ -166,9 +169,11 @@ class Copy:
                 (self.root / entry.name).symlink_to(entry)
         self._takes_s: dict[tuple[Path, ...], float] = {}
 
-    def notices(self, mutant: Mutant, tests: Sequence[Path]) -> bool:
-        """Return whether a mutant fails its tests or makes them take too long; raises where they fail without it."""
-        takes_s = self._takes_s.get(tuple(tests)) or self._measured(tests)
+    def notices(self, mutant: Mutant, tests: Sequence[Path]) -> bool | None:
+        """Return whether a mutant fails its tests or makes them take too long; None where they fail without it."""
+        takes_s = self._takes_s[tuple(tests)] if tuple(tests) in self._takes_s else self._measured(tests)
+        if not takes_s:
+            return None
         file = self.root / mutant.module
         original = file.read_bytes()
         file.write_text(mutant.source, encoding="utf-8")
@@ -179,9 +184,8 @@ class Copy:
 
     def _measured(self, tests: Sequence[Path]) -> float:
         began = time.monotonic()
-        if code := self._run(tests, limit_s=600.0):
-            raise SystemExit(f"Tests fail without a mutant (exit code {code}): {' '.join(map(str, tests))}")
-        self._takes_s[tuple(tests)] = time.monotonic() - began
+        passed = self._run(tests, limit_s=600.0) == 0
+        self._takes_s[tuple(tests)] = time.monotonic() - began if passed else 0.0
         return self._takes_s[tuple(tests)]
 
     def _run(self, tests: Sequence[Path], *, limit_s: float) -> int | None:
@@ -190,10 +194,8 @@ class Copy:
         process.start()
         process.join(limit_s)
         code = process.exitcode
-        try:
+        with suppress(ProcessLookupError):
             os.killpg(process.pid or 0, signal.SIGKILL)  # whatever the tests started goes with them
-        except ProcessLookupError:
-            pass
         process.join()
         return code
 
@@ -220,12 +222,8 @@ def _prepare() -> None:
     os.nice(10)
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     os.environ.setdefault("RETAKE_DATA", str(ROOT.parent / "shared" / "data"))
-    import hypothesis.strategies
-    import PySide6.QtWidgets
-    import pytestqt.plugin
-    import scipy.optimize
-    import scipy.sparse.linalg
-    import torch  # noqa: F401
+    for library in ("hypothesis.strategies", "pytestqt.plugin", "scipy.optimize", "scipy.sparse.linalg", "torch"):
+        importlib.import_module(library)
 
 
 def main(
@@ -235,21 +233,24 @@ def main(
 ) -> None:
     """Draw mutants at random, run their tests, and print who survived and what share was noticed."""
     _prepare()
-    sites = [site for module in modules_of(paths or LIVES) for site in sites_of(module)]
-    drawn = sorted(random.Random(seed).sample(sites, min(count, len(sites))), key=lambda site: str(site.module))
-    noticed = 0
     with tempfile.TemporaryDirectory(prefix="mutants") as folder:
         copy = Copy(Path(folder))
-        for number, mutant in enumerate(map(mutant_at, drawn), 1):
-            tests = tests_of(mutant.module)
-            killed = bool(tests) and copy.notices(mutant, tests)
-            noticed += killed
-            print(f"\r{noticed} of {number}", end="", file=sys.stderr, flush=True)
-            if not killed:
+        sites = [site for module in modules_of(paths or LIVES, copy.root) for site in sites_of(module, copy.root)]
+        drawn = random.Random(seed).sample(
+            sites, min(count, len(sites))
+        )  # in no order: what has run so far is a sample
+        noticed = judged = 0
+        for site in drawn:
+            mutant, tests = mutant_at(site, copy.root), tests_of(site.module, copy.root)
+            found = copy.notices(mutant, tests) if tests else False
+            judged, noticed = judged + (found is not None), noticed + bool(found)
+            if not found:
                 why = "" if tests else "   (no mirror test)"
-                print(f"\r{mutant.module}:{mutant.line}: {mutant.before}  ->  {mutant.after}{why}", flush=True)
-    found = binomtest(noticed, len(drawn)).proportion_ci(method="wilson")
-    print(f"\r{noticed} of {len(drawn)} noticed: {noticed / len(drawn):.1%}, 95 % {found.low:.1%} to {found.high:.1%}")
+                why = "   (its tests fail without it: not counted)" if found is None else why
+                print(f"{mutant.module}:{mutant.line}: {mutant.before}  ->  {mutant.after}{why}", flush=True)
+            print(f"{noticed} of {judged}", end="\r", file=sys.stderr, flush=True)
+    share = binomtest(noticed, max(1, judged)).proportion_ci(method="wilson")
+    print(f"{noticed} of {judged} noticed: {noticed / max(1, judged):.1%}, 95 % {share.low:.1%} to {share.high:.1%}")
 
 
 if __name__ == "__main__":
