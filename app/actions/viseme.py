@@ -35,7 +35,10 @@ class VisemeActions(QObject):
         self._session, self._lane, self._window = session, lane, window
         self.reading = LatestWins(_read, name="visemes")
         self.reading.done.connect(self._arrived)
-        self.reading.failed.connect(lambda _, sentence, advice: self.failed.emit(sentence, advice))
+        self.reading.failed.connect(self._refused)
+
+    def _refused(self, request: object, sentence: str, advice: str) -> None:
+        self.failed.emit(sentence, advice)
 
     def attach(self, path: Path) -> None:
         """Read a file of phones or mouth cues and lay it beside the open take."""

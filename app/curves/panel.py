@@ -12,7 +12,8 @@ from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QMouseEvent, QResizeEv
 from app.curves.drawing import draw_edits, draw_removed, show_frames, take_curves
 from app.curves.lane import Lane
 from app.curves.overlay import FocusRing, Playhead, Underlay
-from app.curves.places import GUTTER_PX, Growth, boxes
+from app.curves.places import GUTTER_PX, Growth
+from app.curves.stack import LaneStack
 from app.curves.tools import make_tools
 from app.curves.tools.base import Tool
 from app.session import Change, Session
@@ -44,12 +45,11 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self.setAccessibleName("Curves")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._colours = colours
-        self.lanes: list[Lane] = []
-        self._made: dict[int, Lane] = {}  # by key; a lane that leaves the screen is kept: Qt may yet paint it once
+        self.stack = LaneStack(self.scene())
         self._growth = Growth()
         self._growth.moved.connect(self._place)
-        self._underlay = Underlay(self._lanes_box, self._x_of)
-        self._playhead = Playhead(self._lanes_box, self._x_of)
+        self._underlay = Underlay(self.stack.box, self._x_of)
+        self._playhead = Playhead(self.stack.box, self._x_of)
         self._ring = FocusRing(self._active_box, self._x_of)
         for item in (self._underlay, self._playhead, self._ring):
             self.scene().addItem(item)
@@ -73,9 +73,14 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         """Whether lanes are on their way to other places."""
         return self._growth.moving
 
+    @property
+    def lanes(self) -> list[Lane]:
+        """The lanes on screen, from top to bottom."""
+        return self.stack.shown
+
     def lane(self, key: int) -> Lane:
         """Return the lane of a curve on screen, an index into CURVES."""
-        return self._made[key]
+        return self.stack.known[key]
 
     def paint_with(self, colours: Palette) -> None:
         """Take on a theme's colours."""
@@ -89,8 +94,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         )
 
     def _paint_lanes(self) -> None:
-        for lane in self.lanes:
-            lane.paint_with(self._colours, self.devicePixelRatioF())  # pens that do not scale would be hairlines
+        self.stack.paint_with(self._colours, self.devicePixelRatioF())  # pens that do not scale would be hairlines
 
     # --- drawing
 
@@ -141,29 +145,12 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self.setCursor(self.tool.cursor)
 
     def _lay_lanes(self) -> None:
-        wanted = self.session.view.lanes
-        if [lane.key for lane in self.lanes] == wanted:
-            return
-        for lane in self.lanes:
-            if lane.key not in wanted:
-                lane.put_away()
-        for key in wanted:
-            if key not in self._made:
-                self._made[key] = Lane(key)
-                self.scene().addItem(self._made[key].gutter)
-                self.scene().addItem(self._made[key].view)
-        self.lanes = [self._made[key] for key in wanted]
-        for lane in self.lanes:
-            lane.gutter.show()
-            lane.view.show()
-        self._paint_lanes()
+        if self.stack.show(self.session.view.lanes):
+            self._paint_lanes()
 
     def _place(self) -> None:
         """Put every lane where the panel's size has it."""
-        size = QSizeF(self.size())
-        places = boxes(size, [lane.key for lane in self.lanes], self._growth.shares)
-        for lane, box in zip(self.lanes, places, strict=True):
-            lane.place(box)
+        self.stack.place(QSizeF(self.size()), self._growth.shares)
         for item in (self._underlay, self._playhead, self._ring):
             item.moved()
         self._follow()
@@ -173,13 +160,10 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self.tool.placed()
 
     def _arrange(self) -> None:
-        keys, active = [lane.key for lane in self.lanes], self.session.view.lane
-        for lane in self.lanes:
-            lane.gutter.active = lane.key == active
-            lane.gutter.expanded = lane.key in self.session.view.expanded
-            lane.gutter.update()
+        active = self.session.view.lane
+        self.stack.mark(active, self.session.view.expanded)
         self._ring.moved()
-        self._growth.choose(keys, active, at_once=not self.isVisible())
+        self._growth.choose(self.stack.keys, active, at_once=not self.isVisible())
         self.setMinimumHeight(MIN_LANE_PX * len(self.lanes))
 
     def _show_playhead(self) -> None:
@@ -226,22 +210,12 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
             return QRectF()
         return shown.scene_box().adjusted(-GUTTER_PX, 0, 0, 0)
 
-    def _lanes_box(self) -> QRectF:
-        return self.lanes[0].scene_box().united(self.lanes[-1].scene_box())
-
     def _x_of(self, frame: float) -> float:
-        box = self.lanes[0].scene_box()
-        first, last = self.session.view.range
-        return box.left() + (frame - first) / max(1e-9, last - first) * box.width()
+        return self.stack.x_of(frame, self.session.view.range)
 
     def lane_at(self, at: QPointF) -> int | None:
         """Return the curve whose lane is under a position in the widget, gutter included."""
-        y = self.mapToScene(at.toPoint()).y()
-        for lane in self.lanes:
-            box = lane.scene_box()
-            if box.top() - 3 <= y < box.bottom() + 3:
-                return lane.key
-        return None
+        return self.stack.at(self.mapToScene(at.toPoint()).y())
 
     def frame_at(self, at: QPointF) -> float:
         """Return the fractional frame under a position in the widget."""
@@ -270,7 +244,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
             self._released()  # elsewhere, if there was a press
         if self._pan_from is not None:
             origin, (first, last) = self._pan_from
-            shift = (origin.x() - event.position().x()) / max(1.0, self._lanes_box().width()) * (last - first)
+            shift = (origin.x() - event.position().x()) / max(1.0, self.stack.box().width()) * (last - first)
             self.session.view.set_range(first + shift, last + shift)
             return
         in_gutter = event.position().x() < GUTTER_PX and not self.tool.busy

@@ -6,33 +6,16 @@ import time
 from dataclasses import replace
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import (
-    QColor,
-    QContextMenuEvent,
-    QImage,
-    QMouseEvent,
-    QPainter,
-    QPaintEvent,
-    QResizeEvent,
-    QWheelEvent,
-)
-from PySide6.QtWidgets import (
-    QComboBox,
-    QFrame,
-    QHBoxLayout,
-    QSizePolicy,
-    QSplitter,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtCore import QPointF, QTimer, Signal
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QComboBox, QFrame, QHBoxLayout, QSplitter, QToolButton, QVBoxLayout, QWidget
 
 from app.preview.camera import PRESETS, Camera, looking
+from app.preview.face import Face
 from app.preview.kept import KeptPictures
-from app.preview.overlay import Overlay, draw_scale
+from app.preview.overlay import Overlay
 from app.preview.picking import vertex_under
-from app.preview.renderer import GROUND, Picture, Shot
+from app.preview.renderer import Picture, Shot
 from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
 from app.session.inference import Inference
@@ -48,133 +31,8 @@ VIEWS = ("Before", "After", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
 WIDE = 0.6  # of what preview and curves share, for two heads
-ROUNDED_PX = 4  # a picture of half the resolution is no more than this narrower or wider
-CLICK_PX = 4  # a press that moves no further is a click
 STRIP_PX = (70, 88)  # one face of a strip
 STRIP_CAMERA = Camera(zoom=1.5, pan=(0.0, -0.07))
-
-
-class Face(QWidget):
-    """The picture; drag orbits, right-drag or Shift-drag pans, wheel zooms, double-click frames the head."""
-
-    camera_moved = Signal(object)
-    clicked = Signal(QPointF)
-    menu_wanted = Signal(QPoint)  # on the screen
-    resized = Signal()  # a picture of another size is wanted
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.camera = Camera()
-        self.image = QImage()
-        self.view = self.pictured = "After"  # what is chosen, and what the picture shows by now
-        self.message = "Preparing the preview…"
-        self.overlay: Overlay | None = None
-        self._grip: QPointF | None = None
-        self._pressed_at = QPointF()
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.setMinimumSize(200, 200)
-        self.setCursor(Qt.CursorShape.OpenHandCursor)
-        self.setAccessibleName("Face preview")
-
-    def sizeHint(self) -> QSize:
-        """Prefer a portrait."""
-        return QSize(460, 620)
-
-    def show_picture(self, picture: Picture, overlay: Overlay | None = None, view: str = "") -> None:
-        """Show a picture, (height, width, 3) uint8, of one of the views, and what is drawn over it."""
-        self.overlay, self.pictured = overlay, view or self.view
-        height, width = picture.shape[:2]
-        self.image = QImage(picture.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
-        self.message = ""
-        self.repaint()
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw the picture, then what labels it."""
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(*GROUND))
-        if not self.image.isNull():
-            painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-            painter.drawImage(self.picture_box(), self.image)
-        painter.setPen(QColor("#e3e6eb"))
-        if self.message:
-            flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
-            painter.drawText(self.rect().adjusted(24, 24, -24, -24), flags, self.message)
-        elif self.overlay is not None:
-            self.overlay.draw(painter)
-        elif self.pictured == "Split":
-            middle = self.width() // 2
-            painter.drawLine(middle, 0, middle, self.height())
-            painter.drawText(GRID, 18, "before")
-            painter.drawText(middle + GRID, 18, "after")
-        elif self.pictured == "Difference":
-            draw_scale(painter, self.height())
-
-    def picture_box(self) -> QRectF:
-        """Return where the picture is: everywhere; one of another format in its own, until the next one comes."""
-        width = self.image.width() * self.height() / max(1, self.image.height())
-        if abs(width - self.width()) <= ROUNDED_PX:
-            return QRectF(self.rect())
-        return QRectF((self.width() - width) / 2, 0.0, width, self.height())
-
-    def event(self, event: QEvent) -> bool:
-        """Ask for another picture on a screen of another resolution."""
-        if event.type() == QEvent.Type.DevicePixelRatioChange:
-            self.resized.emit()
-        return super().event(event)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        """Ask for a picture of the new size."""
-        super().resizeEvent(event)
-        self.resized.emit()
-
-    def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Take hold of the camera."""
-        self._grip = self._pressed_at = event.position()
-        self.setCursor(Qt.CursorShape.ClosedHandCursor)
-
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Orbit or pan."""
-        if self._grip is None or (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX:
-            return
-        moved = event.position() - self._grip
-        self._grip = event.position()
-        if event.buttons() & Qt.MouseButton.RightButton or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            scale = 1.0 / (self.height() * self.camera.zoom)
-            self._move(self.camera.panned(-moved.x() * scale, moved.y() * scale))
-        else:
-            self._move(self.camera.orbited(around_deg=-0.4 * moved.x(), above_deg=0.4 * moved.y()))
-
-    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """Let go; a press that went nowhere is a click."""
-        self._grip = None
-        clicked = (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX
-        if clicked and event.button() == Qt.MouseButton.RightButton:
-            self.menu_wanted.emit(event.globalPosition().toPoint())
-        elif clicked:
-            self.clicked.emit(event.position())
-        self.setCursor(Qt.CursorShape.OpenHandCursor)
-
-    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
-        """Frame the whole head from the front."""
-        self.frame_head()
-
-    def frame_head(self) -> None:
-        """Look at the whole head from the front."""
-        self._move(Camera())
-
-    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Offer what can be done with the face; the mouse's own way is a right click, since a right drag pans."""
-        event.accept()
-        if event.reason() == QContextMenuEvent.Reason.Keyboard:
-            self.menu_wanted.emit(self.mapToGlobal(self.rect().center()))
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom."""
-        self._move(self.camera.zoomed(1.15 ** (event.angleDelta().y() / 120.0)))
-
-    def _move(self, camera: Camera) -> None:
-        self.camera = camera
-        self.camera_moved.emit(camera)
 
 
 class PreviewPanel(QFrame):

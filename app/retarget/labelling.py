@@ -88,7 +88,7 @@ class Labelling:
         if stored.target is None or (known is not None and known.absolute() == stored.target.absolute()):
             self._change(stored.labels, f"read {path.name}")
         else:
-            state.choose_target(stored.target, stored.labels)
+            state.choosing.choose_target(stored.target, stored.labels)
 
     def write(self, path: Path) -> None:
         """Write labels; raises `EngineError`."""

@@ -41,10 +41,10 @@ class ReviewActions(QObject):
         self.comparing.changed.connect(self._show)
         self.comparing.paired.connect(self._open_pair)
         self.reporting = Reporting()
-        self.reporting.written.connect(lambda path: self.told.emit(f"The report is in {path.name}."))
+        self.reporting.written.connect(self._tell_written)
         for part in (self.comparing, self.reporting):
             part.failed.connect(self.failed)
-        self.section.wanted.connect(lambda name: getattr(self, name)())
+        self.section.wanted.connect(self._carry_out)
         # Opens a take in place of what is open, once that is safe; the window says how.
         self.open_take: Callable[[Take, Callable[[], None]], None] = lambda _take, _then: None
         session.changed.connect(self._on_change)
@@ -53,6 +53,12 @@ class ReviewActions(QObject):
         """End the threads."""
         self.comparing.close()
         self.reporting.close()
+
+    def _tell_written(self, path: Path) -> None:
+        self.told.emit(f"The report is in {path.name}.")
+
+    def _carry_out(self, name: str) -> None:
+        getattr(self, name)()
 
     def review_tool(self) -> None:
         """Show what was changed."""

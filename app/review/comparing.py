@@ -76,7 +76,7 @@ class Comparing(QObject):
         self._watched = False
         self._work = LatestWins(_carry_out, name="review")
         self._work.done.connect(self._arrived)
-        self._work.failed.connect(lambda _request, sentence, advice: self.failed.emit(sentence, advice))
+        self._work.failed.connect(self._refused)
         session.changed.connect(self._on_change)
 
     @property
@@ -93,6 +93,9 @@ class Comparing(QObject):
     def read(self, path: Path) -> None:
         """Read a take to compare the open one with; `paired` follows."""
         self._work.submit(_Wish(self._session.document.take, path), "read")
+
+    def _refused(self, request: object, sentence: str, advice: str) -> None:
+        self.failed.emit(sentence, advice)
 
     def close(self) -> None:
         """End the thread."""

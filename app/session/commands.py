@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -51,8 +52,14 @@ class Step(QUndoCommand, Generic[State]):
 
     def __init__(self, document: Document, edit: Edit, *, before: State, after: State) -> None:
         super().__init__(edit.title)
-        self._document, self.edit = document, edit
-        self._before, self._after = before, after
+        self._owner = weakref.ref(document)  # its stack has the step, and neither would ever be freed
+        self.edit, self._before, self._after = edit, before, after
+
+    @property
+    def _document(self) -> Document:
+        document = self._owner()
+        assert document is not None
+        return document
 
     def redo(self) -> None:
         """Do it, first or again."""

@@ -14,20 +14,12 @@ from engine.words import NAME_LENGTH, plain
 
 LANE_PX = 18
 APART_PX = 4  # a mark that is nearer to the one before is not drawn
-NEAR_PX = 8  # how far beside a mark it may be clicked
 NOTE_PX = 220  # what a note's text may take
 
 
 def lanes(marks: Marks) -> list[str]:
     """Return the names of the lanes that have something to show."""
     return [name for name, shown in (("pins", marks.pins), ("notes", marks.notes)) if shown]
-
-
-def nearest_mark(marks: Marks, name: str, frame: float, within: float) -> Note | Pin | None:
-    """Return the pin or note, by the name of its lane, that lies nearest to a frame and no further than `within` frames."""
-    listed: Sequence[Note | Pin] = marks.pins if name == "pins" else marks.notes if name == "notes" else ()
-    near = [mark for mark in listed if abs(mark.frame - frame) <= within]
-    return min(near, key=lambda mark: abs(mark.frame - frame), default=None)
 
 
 def draw_marks(

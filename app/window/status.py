@@ -71,6 +71,10 @@ class StatusBar(QFrame):
     def __getitem__(self, name: str) -> Label:
         return self._labels[name]
 
+    def engine_ready(self) -> None:
+        """Say no longer that the networks are loaded."""
+        self._labels["engine"].setText("")
+
     def tell(self, text: str) -> None:
         """Tell something in passing: it goes when it was there long enough to be read."""
         self["notice"].setText(text)

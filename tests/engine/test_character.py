@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine.character import BUNDLED, Character, bundled, drawable, load, save, without_lacking
+from engine.character import BUNDLED, Character, bundled, load, save, without_lacking
 from engine.errors import AssetError, EditError, FormatError
 from engine.formats.characters.opening import character_of
+from engine.jaw import drawable
 from engine.take import SHAPE_INDEX, SHAPES, Take
 
 Stored = dict[str, Any]

@@ -162,7 +162,7 @@ def test_questions_and_other_files_do_too(
     head = tmp_path / f"{name}.npz"
     save(replace(bundled(), name=text), head)
     window.retarget.retarget_tool()
-    window.retarget.retargeting.choose_target(head)
+    window.retarget.retargeting.choosing.choose_target(head)
     qtbot.waitUntil(lambda: window.retarget.retargeting.target.head is not None, timeout=20_000)
     said = tmp_path / f"{name}.tsv"
     said.write_bytes(f"0.0\tA\n1.0\t{text.split(chr(10))[0][:50]}\n2.0\tX\n".encode("utf-8", "ignore"))

@@ -42,8 +42,8 @@ def assert_lanes_keep_their_places(window: MainWindow) -> None:
         np.testing.assert_allclose(edges, [box.left(), box.right()], atol=1.5)
         drawn = lane.reached.boundingRect()
         assert drawn.left() <= session.view.range[0] + 1 and drawn.right() >= session.view.range[1] - 1
-    hidden = set(curves._made) - set(session.view.lanes)
-    assert not any(curves._made[key].view.isVisible() for key in hidden)
+    hidden = set(curves.stack.known) - set(session.view.lanes)
+    assert not any(curves.stack.known[key].view.isVisible() for key in hidden)
 
 
 def do_something(window: MainWindow, rng: random.Random) -> None:

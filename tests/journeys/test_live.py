@@ -45,7 +45,7 @@ def test_a_stream_is_shown_recorded_and_opened(qtbot: QtBot, window: MainWindow)
     assert np.asarray(shown.args[0]).shape == (52,)
     assert window.preview._frame_label.text() == "live"
     sender.join(timeout=20)
-    qtbot.waitUntil(lambda: window.live._recorder is not None and len(window.live._recorder) >= 45, timeout=10_000)
+    qtbot.waitUntil(lambda: window.live.recording.frames >= 45, timeout=10_000)
     QTest.mouseClick(window.live.record_button, LEFT)
     assert len(window.session.document.take) == 45 and window.session.document.take.name == "live"
     np.testing.assert_allclose(window.session.document.take.weights, sent.weights, atol=1e-6)
@@ -63,7 +63,7 @@ def recording(qtbot: QtBot, window: MainWindow, sent: Take) -> None:
     QTest.mouseClick(window.live.record_button, LEFT)
     sender = threading.Thread(target=replay, args=(sent, ("127.0.0.1", port)))
     sender.start()
-    qtbot.waitUntil(lambda: len(window.live._recorder or ()) >= len(sent), timeout=20_000)
+    qtbot.waitUntil(lambda: window.live.recording.frames >= len(sent), timeout=20_000)
     sender.join()
 
 

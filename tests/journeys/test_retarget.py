@@ -35,7 +35,7 @@ def broad_head(tmp_path: Path) -> Path:
 
 def retargeted(qtbot: QtBot, window: MainWindow) -> None:
     state = window.retarget.retargeting
-    qtbot.waitUntil(lambda: state.idle and not state.opening, timeout=60_000)
+    qtbot.waitUntil(lambda: state.idle and not state.choosing.opening, timeout=60_000)
     settled(qtbot, window)
 
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from engine.formats.livelink.origin import lost_frames
 from engine.formats.livelink.timecode import LONGEST_STEP_S, SHORTEST_STEP_S, Style, middle, read_times
+from engine.formats.livelink.walk import MAX_FRAMES, Walked, walk
 from engine.take import Array, Mask, runs
 from engine.words import counted, plural
 
@@ -24,11 +25,6 @@ STANDARD_FPS = (
 NEAR = 0.0025  # a rate this close to a standard one is that one: clocks run up to 0.2 % fast or slow
 FALLBACK_FPS = 30.0
 SLOWEST_FPS, FASTEST_FPS = 1.0, 1000.0
-MAX_FRAMES = 1_000_000  # over four hours at 60 fps
-LONGEST_PAUSE_S = 1800.0  # a longer one is no part of a performance: what follows it follows at once
-FEW_FRAMES = 8  # that are missing by whole steps of the clock
-AHEAD = 9  # rows that are asked whether a jump of the clock is one
-GAIN = 0.2  # share of a row's deviation by which the next is expected elsewhere [0.1..0.3]; fewer odd rows in uneven clocks
 MOST_ODD = 0.25  # share of stamps out of order beyond which none is believed
 BLOCKS = (25, 13)  # rows over which a rate must explain coarse stamps; fewer where rows are missing in most of them
 MANY_ALIKE = 0.1  # share of rows with the stamp of the row before, beyond which the clock is coarser than it is written
@@ -105,14 +101,14 @@ def _believed(timecodes: Sequence[bytes]) -> Clock:
     step_s = _usual_step(times, quantum_s)
     if not SHORTEST_STEP_S <= step_s <= LONGEST_STEP_S:
         return _row_by_row(len(times), "The timecodes make no sense")
-    walked = _walk(times, step_s, quantum_s)
+    walked = walk(times, step_s, quantum_s)
     if len(walked.odd) > max(2, MOST_ODD * len(times)):
         return _row_by_row(len(times), "Most timecodes are out of order")
     rate, measured = _rate(times, walked, quantum_s=quantum_s, step_s=step_s)
     if walked.rows[-1] >= len(times):  # the longer a pause, the more exactly must the step be known
         length_s = len(times) / measured
         exact = rate if abs(rate / measured - 1) * length_s < 2 * quantum_s else measured
-        walked = _walk(times, 1 / exact, quantum_s)
+        walked = walk(times, 1 / exact, quantum_s)
     missed = int(walked.rows[-1]) + 1 - len(times)
     reason = f"from {style.described}"
     odd = len(set(walked.odd) | set(np.flatnonzero(unread).tolist()))
@@ -190,87 +186,7 @@ def _explained(times: Array, step_s: float, quantum_s: float, rows: int) -> floa
     return float((spread < quantum_s * (1 - 1e-6) + 0.02 * step_s).mean())
 
 
-@dataclass(frozen=True, eq=False)
-class _Walked:
-    """What following a clock row by row came to.
-
-    Attributes
-    ----------
-    rows : (rows,) frame of each row
-    odd : rows whose stamp was not believed
-    set_back : rows from which on the clock is behind
-    pauses : seconds of those that were left out
-    """
-
-    rows: npt.NDArray[np.int64]
-    odd: list[int]
-    set_back: list[int]
-    pauses: list[float]
-
-    @property
-    def uneven(self) -> bool:
-        """Whether the clock goes back and forth by itself, and was not set."""
-        return len(self.set_back) > max(3, 0.005 * len(self.rows)) and not self.pauses
-
-
-def _walk(times: Array, step_s: float, quantum_s: float) -> _Walked:
-    """Follow a clock from row to row, and say which frame each is.
-
-    A row is expected one step after the one before. It is later by a frame or more: frames are missing, if most of the
-    rows after it say the same, and else its stamp is odd. It is earlier: rows are never before those above them, so that
-    it is the next frame, and the clock was set back, or the stamp is odd, as the rows after it say.
-    """
-    deviations = times / step_s - np.arange(
-        len(times)
-    )  # rises where rows are missing, falls where the clock is set back
-    coarse = quantum_s / step_s
-    late = 0.5 + 0.25 * min(1.0, 2 * coarse) + 0.5 * max(0.0, coarse - 1)
-    if np.abs(np.diff(times) / step_s - 1).max() < 0.3:
-        return _Walked(np.arange(len(times)), [], [], [])
-    values = deviations.tolist()
-    expected = _first(deviations, step_s, late)
-    increments = np.ones(len(values), np.int64)
-    odd, set_back, pauses = [], [], []
-    total = len(values)
-    for row, value in enumerate(values):
-        off = value - expected
-        if abs(off) < late:
-            expected += GAIN * off
-            continue
-        agreed = float(np.median(deviations[row : row + AHEAD])) - expected
-        if abs(agreed) < late or (agreed > 0) != (off > 0) or (off > agreed + late):
-            odd.append(row)
-            continue
-        if off < 0:
-            set_back.append(row)
-            expected += agreed
-            continue
-        if off * step_s > LONGEST_PAUSE_S or total + off > MAX_FRAMES or _ends_oddly(row, off * step_s, len(values)):
-            pauses.append(off * step_s)
-        else:
-            increments[row] = 1 + round(off)
-            total += round(off)
-            if off < FEW_FRAMES:  # as many steps as are missing; a pause may end between two of them
-                expected += round(off)
-                continue
-        expected = value
-    increments[0] = 0
-    return _Walked(np.cumsum(increments), odd, set_back, pauses)
-
-
-def _first(deviations: Array, step_s: float, late: float) -> float:
-    """Return what to expect of the first row: what it says, unless those after it say something quite different."""
-    most = float(np.median(deviations[: 2 * AHEAD]))
-    far = abs(float(deviations[0]) - most) > max(late, 1.0 / step_s)
-    return most if far else float(deviations[0])
-
-
-def _ends_oddly(row: int, jump_s: float, rows: int) -> bool:
-    """Whether a jump of more than a second is seen by the last row or two alone: that is a stamp, and no pause."""
-    return rows - row <= 2 and jump_s > 1.0
-
-
-def _rate(times: Array, walked: _Walked, *, quantum_s: float, step_s: float) -> tuple[float, float]:
+def _rate(times: Array, walked: Walked, *, quantum_s: float, step_s: float) -> tuple[float, float]:
     """Return frames per second, and what the plain steps of the clock measure; a standard rate where one is near."""
     believed = np.delete(np.arange(len(times)), walked.odd)
     frames, steps = np.diff(walked.rows[believed]), np.diff(times[believed])
@@ -301,7 +217,7 @@ def _said_rate(style: Style, rate: float, measured: float, quantum_s: float) -> 
     return said
 
 
-def _said_odd(odd: int, walked: _Walked) -> list[str]:
+def _said_odd(odd: int, walked: Walked) -> list[str]:
     said = []
     if odd:
         said.append(f"{counted(odd, 'timecode')} out of order, placed by the rows beside.")

@@ -83,7 +83,7 @@ def test_a_head_that_would_not_be_seen_is_told_and_can_be_read_in_another_unit(
     qtbot.waitUntil(lambda: retarget.retargeting.target.path == path, timeout=30_000)
     head = retarget.retargeting.target.head
     assert head is not None and 200 < np.ptp(head.neutral[:, 1]) < 400
-    assert section.unit.currentText() == "cm" and retarget.retargeting.refused is None
+    assert section.unit.currentText() == "cm" and retarget.retargeting.choosing.refused is None
 
 
 def test_the_wheel_scrolls_past_the_boxes(

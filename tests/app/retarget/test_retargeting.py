@@ -37,7 +37,7 @@ def click(button: QPushButton) -> None:
 def settle(qtbot: QtBot, retarget: RetargetActions) -> None:
     qtbot.waitUntil(lambda: retarget.retargeting.idle, timeout=60_000)
     qtbot.wait(10)  # results on their way to this thread
-    qtbot.waitUntil(lambda: retarget.retargeting.idle and not retarget.retargeting.opening, timeout=60_000)
+    qtbot.waitUntil(lambda: retarget.retargeting.idle and not retarget.retargeting.choosing.opening, timeout=60_000)
 
 
 @pytest.fixture

@@ -9,9 +9,10 @@ from scipy.spatial.transform import Rotation
 from engine.character import bundled
 from engine.errors import EditError
 from engine.formats.markers.capture import Markers
+from engine.jaw import drawable
 from engine.spacetime.closure import GAPS, Gaps
 from engine.spacetime.layout import standard
-from engine.spacetime.source import MARKER_GAPS, Source, bridge, from_markers, from_take, shown, with_gaps
+from engine.spacetime.source import MARKER_GAPS, Source, bridge, from_markers, from_take, with_gaps
 from engine.take import SHAPE_INDEX, Take
 from tests.engine.spacetime.captures import apart, captured
 
@@ -48,9 +49,9 @@ def test_a_take_is_what_the_head_s_markers_do_as_it_is_shown(take: Take) -> None
         np.testing.assert_allclose(
             found.neutral + found.displacements[frame], posed[standard(head).vertices], atol=1e-3
         )
-    np.testing.assert_array_equal(found.gaps, Gaps(head).sizes(shown(wild.weights)))
+    np.testing.assert_array_equal(found.gaps, Gaps(head).sizes(drawable(wild.weights)))
     assert not found.is_capture and len(found) == 150 and found.take is wild
-    limited = shown(wild.weights)
+    limited = drawable(wild.weights)
     close, jaw = SHAPE_INDEX["mouthClose"], SHAPE_INDEX["jawOpen"]
     assert limited.min() == 0 and limited.max() == 1 and (limited[:, close] <= limited[:, jaw]).all()
 
