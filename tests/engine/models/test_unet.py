@@ -2,12 +2,12 @@ from __future__ import annotations
 
 import torch
 
-from engine.models.unet import ALIGNMENT, UNet
+from engine.models.unet import ALIGNMENT, BatchNormUNet
 
 
 def test_frames_stay_as_many_and_a_change_is_felt_as_far_as_the_network_looks() -> None:
     torch.manual_seed(0)
-    network = UNet(3, 2).eval()
+    network = BatchNormUNet(3, 2).eval()
     curves = torch.randn(1, 3, 16 * ALIGNMENT)
     plain = network(curves)
     assert plain.shape == (1, 2, 16 * ALIGNMENT)
