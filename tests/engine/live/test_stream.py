@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,11 +9,11 @@ from hypothesis import strategies as st
 
 from engine.clean.infer import Cleaner
 from engine.clean.network import CleanConfig, CleanNetwork
-from engine.errors import EditError
 from engine.live.livelink import Stamp, encode
+from engine.live.packet import Packet
 from engine.live.record import Recorder
 from engine.live.replay import Network, packets, schedule
-from engine.live.stream import MAX_SUBJECTS, Arrival, LiveFrame, Stream
+from engine.live.stream import MAX_SUBJECTS, Clock, LiveFrame, Stream
 from engine.take import SHAPES, Take
 
 CLEANER = Cleaner(CleanNetwork(CleanConfig(hidden=8)))
@@ -122,28 +124,6 @@ def test_a_phone_that_sends_every_other_tick_gives_thirty_frames() -> None:
     assert (taken.fps, len(taken), taken.lost.any()) == (30.0, 60, False)
 
 
-def test_nothing_recorded_is_said() -> None:
-    with pytest.raises(EditError, match="Nothing was recorded"):
-        Recorder().take()
-
-
-def test_a_recorder_keeps_no_more_than_it_may(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.live.record.MAX_FRAMES", 5)
-    recorder = Recorder()
-    for index in range(9):
-        recorder.add(Arrival(index / 60, 60.0, WEIGHTS[0], np.zeros(9, np.float32), late=False))
-    assert len(recorder) == 5 and recorder.full and len(recorder.take()) == 5
-
-
-def test_the_way_treats_the_same_take_alike_and_loses_its_share() -> None:
-    network = Network(loss=0.2, reorder=0.1, jitter_s=0.01, seed=3)
-    order = schedule(TAKE, network)
-    assert order == schedule(TAKE, network) and 0.7 < len(order) / len(TAKE) < 0.9
-    assert [due for due, _ in order] == sorted(due for due, _ in order)
-    assert [index for _, index in order] != sorted(index for _, index in order)
-    assert schedule(TAKE, Network()) == [(index / 60.0, index) for index in range(len(TAKE))]
-
-
 def test_a_clock_that_leaps_with_each_packet_declares_no_more_than_time_that_passed() -> None:
     rig, tick, arrivals = Rig(), 0, 800
     for number in range(arrivals):  # 2 s of packets, each a thousandth or nine seconds after the one before
@@ -152,24 +132,6 @@ def test_a_clock_that_leaps_with_each_packet_declares_no_more_than_time_that_pas
     taken = rig.recorder.take()
     assert len(taken) <= 1000 * (2 + 10) + arrivals  # unbounded it would be 3.6 million frames of a kilobyte each
     assert len(rig.recorder) == arrivals and int((~taken.lost).sum()) >= arrivals / 2
-
-
-def test_slow_rates_among_fast_ones_cannot_fill_the_memory() -> None:
-    recorder = Recorder()
-    times_s = np.cumsum(np.where(np.arange(3000) % 3, 0.001, 9.0))
-    for time_s in times_s:
-        recorder.add(Arrival(float(time_s), 1000.0, WEIGHTS[0], np.zeros(9, np.float32), False))
-    taken = recorder.take()
-    assert len(taken) < 200_000 and "shortened" in taken.notices[0]
-    assert int((~taken.lost).sum()) == 3000  # no face is dropped for it
-
-
-def test_a_recording_with_ordinary_pauses_keeps_them() -> None:
-    recorder = Recorder()
-    times_s = np.concatenate([np.arange(100) / 60, 9.0 + np.arange(100) / 60])
-    for time_s in times_s:
-        recorder.add(Arrival(float(time_s), 60.0, WEIGHTS[0], np.zeros(9, np.float32), False))
-    assert len(recorder.take()) == round((9.0 + 99 / 60) * 60) + 1 and not recorder.take().notices
 
 
 def test_invented_names_do_not_keep_a_phone_out() -> None:
@@ -197,3 +159,90 @@ def test_a_face_that_falls_silent_gives_way_unless_it_was_chosen_or_is_recorded(
     assert send("phone", 10.6) is None and send("phone", 30.0) is None and stream.subject == "Bob"
     recorded = Rig()
     assert recorded.send(face(0, subject="Ana")) and recorded.send(face(1, subject="Bob"), 99.0) is None
+
+
+def at(time_s: float | None, fps: float = 50.0) -> Packet:
+    return Packet("Ana", time_s, fps, WEIGHTS[0], np.zeros(9, np.float32))
+
+
+def test_a_clock_places_packets_by_the_sender_s_time_and_knows_late_ones() -> None:
+    clock = Clock()
+    assert clock.place(at(700.0), 3.0) == (0.0, False)
+    assert clock.place(at(700.5), 3.5) == (pytest.approx(0.5), False)
+    assert clock.place(at(700.25), 3.5) == (pytest.approx(0.25), True)
+    assert clock.place(at(700.5), 3.6) == (pytest.approx(0.5), False)
+    assert clock.place(at(698.6), 3.7) == (pytest.approx(-1.4), True)  # 1.9 s back: late, the clock is not set back
+    assert clock.place(at(700.75), 4.0) == (pytest.approx(0.75), False)
+
+
+@pytest.mark.parametrize("leap_s", [-2.1, 10.1, -1e5, 1e5])
+def test_a_clock_that_is_set_anew_goes_on_one_frame_later(leap_s: float) -> None:
+    clock = Clock()
+    clock.place(at(100.0), 50.0)
+    clock.place(at(101.0), 51.0)
+    assert clock.place(at(101.0 + leap_s), 99.0) == (pytest.approx(1.02), False)
+    assert clock.place(at(101.5 + leap_s), 99.5) == (pytest.approx(1.52), False)
+
+
+def test_a_clock_follows_the_last_packet_where_it_is_told_to_begin_anew() -> None:
+    clock = Clock()
+    clock.place(at(100.0), 50.0)
+    clock.restart()
+    assert clock.place(at(5000.0), 50.5) == (pytest.approx(0.02), False)
+    assert clock.place(at(5000.3), 50.8) == (pytest.approx(0.32), False)
+
+
+def test_a_clock_runs_ahead_of_the_time_that_passed_by_ten_seconds_at_most() -> None:
+    clock = Clock()
+    assert clock.place(at(0.0), 70.0) == (0.0, False)
+    assert clock.place(at(9.5), 70.0) == (pytest.approx(9.5), False)
+    assert clock.place(at(11.0), 70.0) == (pytest.approx(9.52), False)
+    assert clock.place(at(11.25), 70.0) == (pytest.approx(9.77), False)
+    assert clock.place(at(13.0), 73.0) == (pytest.approx(11.52), False)
+
+
+def test_a_sender_without_a_clock_is_placed_by_arrival() -> None:
+    clock = Clock()
+    assert [clock.place(at(None), 20.0 + step / 4)[0] for step in range(4)] == pytest.approx([0.0, 0.25, 0.5, 0.75])
+
+
+class Noted:
+    """A cleaner that notes what it is asked for, and shows the time it was led through."""
+
+    def __init__(self) -> None:
+        self.steps: list[tuple[bool, float]] = []
+
+    def start(self, weights: np.ndarray) -> SimpleNamespace:
+        return SimpleNamespace(shown=weights)
+
+    def step(self, seen: np.ndarray | None, step_s: float, state: SimpleNamespace) -> SimpleNamespace:
+        self.steps.append((seen is not None, step_s))
+        return state
+
+
+@pytest.mark.parametrize(("missed", "bridged"), [(0, 0), (1, 0), (2, 2), (5, 5), (16, 16), (17, 16), (300, 16)])
+def test_frames_that_never_came_are_bridged_up_to_a_limit(missed: int, bridged: int) -> None:
+    noted = Noted()
+    stream = Stream(cleaner=noted)  # type: ignore[arg-type]
+    for frame in (0, missed + 1):
+        assert stream.receive(face(frame), 0.0, lambda: 0.0) is not None
+    assert [seen for seen, _ in noted.steps] == [False] * bridged + [True]
+    assert [step for _, step in noted.steps] == pytest.approx([(missed + 1) / 60 / (bridged + 1)] * (bridged + 1))
+
+
+def test_latency_is_told_in_milliseconds_and_rotations_as_sent() -> None:
+    rig = Rig()
+    frame = rig.send(encode(Stamp(3), WEIGHTS[0], np.arange(9, dtype=np.float32), subject="Ana"), 12.5)
+    assert frame is not None and frame.latency_ms == pytest.approx(1.0) and frame.arrived_s == 12.5
+    np.testing.assert_array_equal(frame.rotations, np.arange(9))
+    assert (frame.fps, frame.time_s, frame.subject) == (60.0, 0.0, "Ana")
+
+
+def test_a_face_gives_way_after_ten_silent_seconds_and_not_before() -> None:
+    stream = Stream(cleaner=CLEANER)
+    for subject, arrived_s, follows in (("Ana", 0.0, True), ("Bob", 10.0, False), ("Bob", 10.1, True)):
+        found = stream.receive(face(round(60 * arrived_s), subject=subject), arrived_s, lambda: 0.0)
+        assert (found is not None) == follows, arrived_s
+    assert stream.counts["another subject"] == 1
+    named = Stream(cleaner=CLEANER, subject="Ana")
+    assert named.receive(face(1, subject="Bob"), 99.0, lambda: 0.0) is None and named.subject == "Ana"

@@ -12,45 +12,10 @@ import pytest
 from engine import project
 from engine.controls import ALL_CONTROLS
 from engine.errors import EngineError, FormatError
-from engine.formats import livelink
-from engine.formats.livelink.origin import Origin
-from engine.formats.livelink.writer import encode
-from engine.lab.performer import demo
 from engine.project import Contents, Project
 from engine.take import SHAPES, Take
-from tests.engine.project.projects import reopened, sample, sql, stored
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """A sound project file of 40 frames, four edits and every kind of mark."""
-    rng = np.random.default_rng(3)
-    take = Take(weights=rng.random((40, len(SHAPES))), fps=30.0, name="random")
-    return stored(sample(take), tmp_path_factory.mktemp("whole"))
-
-
-@pytest.fixture(scope="module")
-def recorded(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """A sound project file of a take that came from a recording."""
-    return stored(Contents(livelink.read(demo.BUNDLED)), tmp_path_factory.mktemp("recorded"))
-
-
-def damaged(whole: bytes, path: Path, *statements: str, values: tuple[object, ...] = ()) -> str:
-    path.write_bytes(whole)
-    sql(path, *statements, values=values)
-    with pytest.raises(FormatError) as caught:
-        Project.open(path)
-    assert path.name in caught.value.sentence and "Traceback" not in str(caught.value)
-    return caught.value.sentence
-
-
-def marked(**marks: object) -> str:
-    whole = {"spans": [], "pins": [], "notes": [], "media": [], "verdict": ""}
-    return json.dumps({"before": whole, "after": {**whole, **marks}})
-
-
-def zeros(count: int) -> bytes:
-    return zlib.compress(bytes(count))
+from tests.engine.project.damage import damaged, marked, zeros
+from tests.engine.project.projects import reopened, sql, stored
 
 
 @pytest.mark.parametrize(
@@ -146,42 +111,6 @@ def test_values_that_cannot_be_are_a_sentence(whole: bytes, tmp_path: Path, stat
     assert "damaged" in damaged(whole, tmp_path / "a.retake", statement, values=(value,))
 
 
-@pytest.mark.parametrize(
-    ("statement", "value"),
-    [
-        ("UPDATE origin SET rows = ?", 10**12),
-        ("UPDATE origin SET rows = ?", -1),
-        ("UPDATE origin SET frames = ?", zeros(9)),
-        ("UPDATE origin SET frames = ?", zeros(8 * 275)),
-        ("UPDATE origin SET lost = ?", zlib.compress(bytes([1]) * 275)),
-        ("UPDATE origin_text SET bytes = ?", 10**12),
-        ("UPDATE origin_text SET bytes = ?", 0),
-        ("UPDATE origin_text SET text = ?", zeros(9)),
-        ("UPDATE origin_text SET place = place + ?", 1),
-        ("DELETE FROM origin_text WHERE place = ?", 0),
-        ("UPDATE origin_text SET bytes = 300, text = ?", zlib.compress(b"\xff\n" * 150)),
-        ("UPDATE origin_text SET bytes = 300, text = ?", zlib.compress(b"a\n" * 150)),
-        ("UPDATE origin_text SET bytes = 600, text = ?", zlib.compress(b"a\n" * 300)),
-    ],
-)
-def test_an_origin_that_cannot_be_is_a_sentence(recorded: bytes, tmp_path: Path, statement: str, value: object) -> None:
-    assert "damaged" in damaged(recorded, tmp_path / "a.retake", statement, values=(value,))
-
-
-def test_a_take_whose_stored_text_is_no_row_is_written_all_the_same(recorded: bytes, tmp_path: Path) -> None:
-    path = tmp_path / "a.retake"
-    path.write_bytes(recorded)
-    take = reopened(path).original
-    assert isinstance(take.origin, Origin)
-    head, *lines = take.origin.content.splitlines(keepends=True)
-    text = head + b"".join(b"junk\n" if 20 <= index < 30 else line for index, line in enumerate(lines))
-    sql(path, "UPDATE origin_text SET bytes = ?, text = ?", values=(len(text), zlib.compress(text)))
-    opened = reopened(path).original
-    edited = opened.with_rows(22, opened.weights[22:25] + 0.125)
-    written = b"".join(encode(edited)).splitlines()
-    assert len(written) == len(lines) + 1 and {len(line.split(b",")) for line in written[23:26]} == {63}
-
-
 def test_a_small_file_cannot_fill_the_memory(whole: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("engine.project.blobs.ORDINARY_BYTES", 2**20)
     rows = zeros(40 * len(SHAPES) * 8)
@@ -240,43 +169,6 @@ def test_flipped_and_missing_bytes_give_a_project_or_a_sentence(whole: bytes, tm
         for leavings in tmp_path.glob(f"{trial}.retake*"):
             leavings.unlink()
     assert refused > 75
-
-
-@pytest.mark.parametrize(
-    ("statement", "value"),
-    [
-        ("UPDATE take SET fps = ?", 1e-320),
-        ("UPDATE take SET fps = ?", 1e-4),
-        ("UPDATE take SET start_s = ?", 1e300),
-        (
-            "UPDATE edits SET kind = 'mark', inputs = ?",
-            marked(media=[{"kind": "audio", "path": "a", "sha256": "b"}] * 2),
-        ),
-        ("UPDATE media SET kind = ?", "anything"),
-    ],
-)
-def test_times_and_kinds_that_cannot_be_are_a_sentence(whole: bytes, tmp_path: Path, statement: str, value) -> None:
-    if "mark" in statement:
-        value = value.replace('"sha256": "b"}', '"sha256": "b", "offset_s": [1, 2]}')
-    assert "damaged" in damaged(whole, tmp_path / "a.retake", statement, values=(value,))
-
-
-@pytest.mark.parametrize("offset", ["[1, 2]", '"1"', "null", "true", "1" + "0" * 400, "1e300", "{}"])
-def test_an_offset_that_is_no_time_is_a_sentence_wherever_it_stands(whole: bytes, tmp_path: Path, offset: str) -> None:
-    media = marked(media=[{"kind": "audio", "path": "a.wav", "sha256": "00", "offset_s": 0.125}]).replace(
-        "0.125", offset
-    )
-    text = damaged(whole, tmp_path / "a.retake", "UPDATE edits SET kind = 'mark', inputs = ?", values=(media,))
-    assert "damaged" in text
-
-
-@pytest.mark.parametrize("date", ["0001-01-01T00:00:00+23:59", "9999-12-31T23:59:59-23:59", "", "tomorrow", "5" * 400])
-def test_a_date_that_no_calendar_has_is_a_sentence(whole: bytes, tmp_path: Path, date: str) -> None:
-    path = tmp_path / "a.retake"
-    path.write_bytes(whole)
-    sql(path, "UPDATE state SET changed = ?", values=(date,))
-    with pytest.raises(FormatError, match="last change"):
-        project.peek(path)
 
 
 def test_what_is_written_is_within_what_is_read_however_well_it_packs(tmp_path: Path, monkeypatch) -> None:

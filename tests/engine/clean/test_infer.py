@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from engine.clean.infer import FROZEN_S, LEAD_S, SLOW_PER_S, Cleaner, CleanState, bundled
+from engine.clean.infer import FROZEN_S, LEAD_S, SLOW_PER_S, Cleaner, CleanState, believable, bundled
+from engine.clean.landing import Landing
 from engine.take import SHAPES
 
 RNG = np.random.default_rng(1)
@@ -86,3 +89,55 @@ def test_the_output_is_always_a_face() -> None:
         assert state.shown.min() >= 0 and state.shown.max() <= 1
     stepped = bundled().step(MOVING[0], 0.0, bundled().start(MOVING[0]))
     assert np.isfinite(stepped.velocity).all()
+
+
+def test_what_is_shown_is_ahead_of_the_estimate_and_on_its_way_back_to_it() -> None:
+    still = bundled().start(np.full(len(SHAPES), 0.5))
+    away = np.full(len(SHAPES), 0.25, np.float32)
+    state = replace(still, ahead=away / 5, landing=Landing(-away, 0 * away))
+    np.testing.assert_allclose(state.shown, 0.5 + 0.05 - 0.25, rtol=1e-6)
+    assert (replace(still, ahead=4 * away).shown == 1).all() and (replace(still, ahead=-4 * away).shown == 0).all()
+
+
+@pytest.mark.parametrize(("fps", "share"), [(24.0, 0.16), (30.0, 0.25), (60.0, 1.0), (120.0, 1.0)])
+def test_fast_shapes_lead_by_eight_milliseconds_of_what_exceeds_a_slow_motion(fps: float, share: float) -> None:
+    ramp = np.clip(np.arange(round(0.4 * fps)) / fps, 0, 1)[:, None] * 2 * (POSE > 0.3)
+    state = follow(bundled(), [*ramp.astype(np.float32)], fps)[-1]
+    beyond = np.sign(state.velocity) * np.maximum(np.abs(state.velocity) - 0.5, 0)
+    assert np.abs(beyond).max() > 0.04
+    np.testing.assert_allclose(state.ahead, share * 0.008 * beyond, rtol=1e-4, atol=1e-9)
+
+
+def test_one_frame_for_long_is_followed_less_and_less() -> None:
+    before = follow(bundled(), [*MOVING[:60]])[-1]
+    fresh, stale, old = (
+        bundled().step(before.seen, 1 / 60, replace(before, frozen_s=seconds)) for seconds in (0.0, 0.9, 5.0)
+    )
+    inside = (fresh.weights > 0.01) & (fresh.weights < 0.99)
+    jump, less = (fresh.weights - before.weights)[inside], (old.weights - before.weights)[inside]
+    np.testing.assert_array_equal(stale.weights, fresh.weights)
+    assert np.abs(jump).max() > 1e-3
+    np.testing.assert_allclose(less, jump * np.exp(-(5 + 1 / 60 - 1)), atol=1e-6)
+    assert old.frozen_s == pytest.approx(5 + 1 / 60, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("asked_s", "taken_s"), [(0.0, 0.001), (-3.0, 0.001), (0.0005, 0.001), (0.7, 0.5), (60.0, 0.5)]
+)
+def test_steps_are_held_to_what_a_face_may_be_extrapolated_over(asked_s: float, taken_s: float) -> None:
+    before = follow(bundled(), [*MOVING[:30]])[-1]
+    one, other = (bundled().step(MOVING[30], step_s, before) for step_s in (asked_s, taken_s))
+    np.testing.assert_array_equal(one.weights, other.weights)
+    np.testing.assert_array_equal(one.velocity, other.velocity)
+
+
+def test_a_frame_counts_as_a_face_up_to_the_limits_and_no_further() -> None:
+    frame = np.full(len(SHAPES), 0.5)
+    for value, clamped in ((-1.0, 0.0), (2.0, 1.0), (0.25, 0.25)):
+        frame[3] = value
+        found = believable(frame)
+        assert found is not None and found[3] == clamped and found[4] == 0.5
+    for value in (-1.001, 2.001, np.nan):
+        frame[3] = value
+        assert believable(frame) is None
+    assert believable(None) is None

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from engine.clean.infer import Cleaner
-from engine.clean.lag import lag_ms
 from engine.clean.network import CleanConfig, CleanNetwork
 from engine.clean.takes import clean, run
 from engine.errors import EditError
@@ -61,18 +60,34 @@ def test_progress_is_told() -> None:
     assert told == sorted(told) and len(told) == 2 and 0 < told[0] < 1
 
 
-@pytest.mark.parametrize("late_ms", [-50.0, 0.0, 12.0, 80.0])
-def test_a_known_lag_is_found(late_ms: float) -> None:
-    rng = np.random.default_rng(0)
-    times = np.cumsum(rng.uniform(1 / 120, 1 / 24, 600))
-    waves = rng.uniform(0.5, 5, (6, 4)), rng.uniform(0, 6, (6, 4))
+def test_a_span_is_eased_in_and_out_over_a_tenth_of_a_second() -> None:
+    take = Take(np.clip(TRACKED.weights, 0, 1), 30.0)
+    whole, span = clean(take, cleaner=CLEANER), clean(take, frames=(10, 40), cleaner=CLEANER)
+    moved = whole.take.weights - take.weights
+    column = int(np.abs(moved[[10, 11, 12, 37, 38, 39]]).min(axis=0).argmax())
+    frames = np.array([9, 10, 11, 12, 13, 36, 37, 38, 39, 40])
+    shares = np.array([0, 7 / 27, 20 / 27, 1, 1, 1, 1, 20 / 27, 7 / 27, 0])
+    assert np.abs(moved[frames[1:-1], column]).min() > 1e-5
+    np.testing.assert_allclose(
+        (span.take.weights - take.weights)[frames, column], shares * moved[frames, column], atol=1e-9
+    )
 
-    def curves(at: np.ndarray) -> np.ndarray:
-        return np.sin(at[:, None, None] * waves[0] + waves[1]).sum(axis=1)
 
-    found = lag_ms(curves(times - late_ms / 1e3), curves(times), times)
-    assert found == pytest.approx(late_ms, abs=1.0)
+def test_a_span_is_as_in_the_take_since_five_seconds_are_listened_to_before_it() -> None:
+    rng = np.random.default_rng(1)
+    take = Take(rng.random((400, 52)), 30.0)
+    heard = clean(take, frames=(200, 230), cleaner=CLEANER)
+    from_there = Take(take.weights[50:], 30.0)
+    np.testing.assert_allclose(
+        clean(from_there, frames=(50 + 100, 80 + 100), cleaner=CLEANER).take.weights[155:175],
+        heard.take.weights[205:225],
+        atol=1e-12,
+    )
 
 
-def test_what_does_not_move_has_no_lag() -> None:
-    assert np.isnan(lag_ms(np.ones((100, 3)), np.ones((100, 3)), np.arange(100) / 30))
+def test_no_strength_touches_nothing_and_a_range_before_the_take_is_refused() -> None:
+    nothing = clean(TAKE, strength=0.0, frames=(3, 9), cleaner=CLEANER)
+    assert nothing.take is TAKE and nothing.touched == (3, 3) and nothing.lag_ms == 0 and not nothing.removed.any()
+    with pytest.raises(EditError, match="not within the take"):
+        clean(TAKE, frames=(-1, 5), cleaner=CLEANER)
+    assert clean(TAKE, frames=(0, len(TAKE)), cleaner=CLEANER).touched == (0, len(TAKE))

@@ -83,6 +83,25 @@ def test_a_port_in_use_is_said() -> None:
         Listener(Stream(cleaner=CLEANER), port=listener.address[1])
 
 
-def test_an_address_that_is_none_is_said() -> None:
-    with pytest.raises(EngineError, match="no address"):
-        replay(TAKE, ("256.1.1.1", 11111))
+def test_an_allowance_fills_again_at_its_rate_and_no_further_than_a_burst() -> None:
+    allowances = Allowances(per_s=10.0, burst=3)
+    assert [allowances.take("a", 0.0) for _ in range(4)] == [True, True, True, False]
+    assert [allowances.take("a", at) for at in (0.05, 0.1, 0.15, 0.2)] == [False, True, False, True]
+    assert [allowances.take("a", 60.0) for _ in range(4)] == [True, True, True, False]
+
+
+def test_a_sender_beyond_the_last_place_shares_one_allowance_until_another_falls_silent() -> None:
+    allowances = Allowances(per_s=1e-9, burst=2)
+    for number in range(SENDERS):
+        assert allowances.take(f"{number}", number / 1000)
+    assert [allowances.take(name, 1.0) for name in ("x", "y", "z")] == [True, True, False]
+    assert [allowances.take(name, 10.0) for name in ("x", "y")] == [False, False]
+    assert [allowances.take("w", 10.0005) for _ in range(3)] == [True, True, False]  # "0" was silent for ten seconds
+    assert allowances.take("0", 10.0005) is False
+
+
+def test_a_listener_tells_the_latency_that_nineteen_of_twenty_frames_keep() -> None:
+    with Listener(Stream(cleaner=CLEANER), port=0) as listener:
+        assert np.isnan(listener.status().latency_p95_ms) and listener.status().subjects == ()
+        listener._latencies.extend(range(101))
+        assert listener.status().latency_p95_ms == 95.0

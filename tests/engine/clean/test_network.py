@@ -4,11 +4,8 @@ import numpy as np
 import pytest
 import torch
 
-from engine.character import bundled
 from engine.clean.infer import Cleaner
 from engine.clean.network import CleanConfig, CleanNetwork, config_of, from_config, run
-from engine.controls import Measurer
-from engine.models.distances import SIX, six_distances
 from engine.take import SHAPES
 
 RNG = np.random.default_rng(0)
@@ -82,9 +79,3 @@ def test_a_network_is_rebuilt_from_its_configuration() -> None:
     again = from_config(config_of(network))
     again.load_state_dict(network.state_dict())
     assert again.config == network.config
-
-
-def test_distances_equal_the_measurer() -> None:
-    weights = SEEN.astype(np.float64)
-    expected = Measurer(bundled(), SIX).measure(weights) / 10
-    np.testing.assert_allclose(six_distances(unit_mm=10.0)(torch.tensor(SEEN)[None])[0].numpy(), expected, atol=2e-3)
