@@ -233,7 +233,7 @@ class FileActions(QObject):
 
     def load_character(self) -> None:
         """Choose a head to show the take on, and to carry it to by default; none goes back to the bundled one."""
-        kinds = "Heads (*.npz *.glb *.gltf *.vrm *.obj)"
+        kinds = "Heads (*.npz *.glb *.gltf *.vrm *.obj *.ply *.stl)"
         name, _ = QFileDialog.getOpenFileName(self._window, "Show on another head", "", kinds)
         self.character_chosen.emit(Path(name) if name else None)
 

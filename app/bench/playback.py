@@ -14,7 +14,7 @@ import numpy as np
 from app.playback.clock import Pull
 from app.playback.device import LATENCY_S
 from app.preview.worker import Wanted
-from engine.lab.speed import Speed, performance_of
+from engine.lab.speed.timing import Speed, performance_of
 
 PLAYED_S = 30.0
 RATE, BLOCK = 48_000, 512

@@ -20,7 +20,7 @@ from app.widgets.saving import ask_where, beside
 from app.widgets.section import Section
 from engine.errors import EngineError
 
-HEADS = "Heads (*.npz *.glb *.gltf *.vrm *.obj)"
+HEADS = "Heads (*.npz *.glb *.gltf *.vrm *.obj *.ply *.stl)"
 CAPTURES = "Markers (*.csv *.tsv *.trc *.c3d)"
 SUGGESTED = 4
 

@@ -115,7 +115,7 @@ def commit() -> str:
     try:
         run = subprocess.run(
             ["git", "describe", "--always", "--dirty"],
-            cwd=Path(__file__).parent,
+            cwd=assets.PACKAGE,
             capture_output=True,
             text=True,
             check=True,

@@ -14,7 +14,6 @@ import numpy as np
 from engine.controls import ALL_CONTROLS, ALL_INDEX
 from engine.errors import EngineError
 from engine.formats.livelink import MAX_COLUMNS
-from engine.formats.livelink.origin import Origin
 from engine.formats.livelink.timecode import DAY_S
 from engine.project.blobs import Budget, DamagedError, pack, unpack
 from engine.project.mark_rows import read_marks, read_verdict, write_marks
@@ -94,8 +93,7 @@ def write_state(database: sqlite3.Connection, contents: Contents) -> None:
 def _write_take(database: sqlite3.Connection, take: Take) -> None:
     blobs = pack(take.weights), pack(take.lost), pack(take.rotations)
     insert(database, "take", (1, take.name, take.fps, take.start_s, len(take), *blobs))
-    if isinstance(take.origin, Origin) and take.origin.fits(take) and np.array_equal(take.origin.weights, take.weights):
-        write_origin(database, take.origin)
+    write_origin(database, take)
 
 
 def _read_take(database: sqlite3.Connection, budget: Budget) -> Take:

@@ -8,15 +8,15 @@ import numpy as np
 
 from engine.anatomy import Indices
 from engine.controls import CONTROL_INDEX
+from engine.jaw import excess
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen, lowest
 from engine.quality.tuning import TUNING
 from engine.speech.visemes import NAMES
-from engine.take import SHAPE_INDEX, Mask, runs
+from engine.take import Mask, runs
 
 LIPS = CONTROL_INDEX["lips_vertical"]
 _MBP, _FV = NAMES.index("mbp"), NAMES.index("fv")
-_CLOSE, _JAW = SHAPE_INDEX["mouthClose"], SHAPE_INDEX["jawOpen"]
 
 
 def stay_open(seen: Seen, low: int, high: int) -> Iterator[Flag]:
@@ -45,7 +45,7 @@ def off_teeth(seen: Seen, low: int, high: int) -> Iterator[Flag]:
 
 def close_above_jaw(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames on which mouthClose is above jawOpen: some characters press the lips through each other there."""
-    beyond = seen.weights[low:high, _CLOSE] - np.maximum(seen.weights[low:high, _JAW], 0.0)
+    beyond = excess(seen.weights[low:high])
     for start, stop in runs((beyond > seen.tuning.above_jaw) & seen.kept[low:high]):
         most = float(beyond[start:stop].max())
         text = f"mouthClose is {most:.2f} above jawOpen: on some characters the lips close too far."

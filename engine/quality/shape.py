@@ -10,11 +10,11 @@ import numpy as np
 from engine.anatomy import EXCLUSIVE, clash
 from engine.character import bundled
 from engine.formats.livelink.sides import EXCHANGED, PULLING, judge
+from engine.jaw import limited
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen, strengths
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, runs
 
-_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 _SIDES = ("Left", "Right")
 _TELLING = 20_000  # frames that tell the sides; of a longer take every second one, every third, ...
 _MEETING = (
@@ -85,8 +85,7 @@ def crossing(seen: Seen, low: int, high: int) -> Iterator[Flag]:
 def crossed_mm(weights: Array, name: str) -> Array:
     """Return by how much the lower lip or lid is above the upper one, (frames,) mm, negative where it is below."""
     rest, basis = _gaps(name)
-    drawn = weights.copy()  # lips close no further than the jaw has opened, as the character is drawn
-    drawn[:, _CLOSE] = np.minimum(weights[:, _CLOSE], np.maximum(weights[:, _JAW], 0.0))
+    drawn = limited(weights)
     # einsum sums a row alike wherever it stands; a matrix product does not, and flags must not depend on that
     return np.asarray(
         -np.min([np.einsum("fs,s->f", drawn, one) + gap for gap, one in zip(rest, basis, strict=True)], 0)

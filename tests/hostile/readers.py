@@ -265,6 +265,22 @@ def _read_mesh(path: Path) -> None:
     obj.read_mesh(path)
 
 
+def _scans(folder: Path) -> Iterator[tuple[str, bytes]]:
+    import trimesh
+
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    yield "a.ply", ball.export(file_type="ply")
+    yield "b.ply", ball.export(file_type="ply", encoding="ascii")
+    yield "c.stl", ball.export(file_type="stl")
+    yield "d.stl", ball.export(file_type="stl_ascii").encode()
+
+
+def _read_scan(path: Path) -> None:
+    from engine.formats.characters import scans
+
+    scans.read(path)
+
+
 def _label_files(folder: Path) -> Iterator[tuple[str, bytes]]:
     rows = [{"frame": 3, "weights": {"jawOpen": 0.4}}, {"frame": 12, "weights": {"mouthClose": 0, "tongueOut": 1}}]
     yield "a.json", json.dumps({"target": "heads/anna.npz", "labels": rows}).encode()
@@ -361,6 +377,7 @@ READERS: dict[str, Reader] = {
     "npz heads": Reader(_heads, _read_head, mutate.archive),
     "gltf": Reader(_scenes, _read_scene, mutate.scene),
     "obj": Reader(_meshes, _read_mesh, mutate.text),
+    "ply and stl": Reader(_scans, _read_scan, mutate.binary),
     "labels": Reader(_label_files, _read_labels, mutate.text),
     "landmark csv": Reader(_layouts, _read_layout, mutate.text),
     "live packets": Reader(_packets, _read_packet, mutate.binary),

@@ -17,7 +17,7 @@ from engine.formats.characters.landmarks import transfer_landmarks
 from engine.formats.characters.names import Match, match_names
 from engine.formats.characters.raw import RawCharacter
 from engine.framing import LEAST_SHARE, share_seen
-from engine.manifold.drive import parts_of
+from engine.mesh import parts_of
 from engine.take import SHAPE_INDEX, SHAPES, Array
 from engine.words import counted
 

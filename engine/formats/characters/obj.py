@@ -1,4 +1,9 @@
-"""A folder of OBJ files: the neutral face and one file for each shape, all with the same vertices in the same order."""
+"""A folder of OBJ files: the neutral face and one file for each shape, all with the same vertices in the same order.
+
+Read by code of our own: the shapes of a head stand and fall with the numbers of its vertices. trimesh makes 257,701
+vertices of ICT-FaceKit's 26,719, one for each material, and twice the time (1.1 s for 0.7); with materials off it finds
+1,080 of its 52,220 triangles, after 7 s; it knows no tabs, and no line that is at fault.
+"""
 
 from __future__ import annotations
 

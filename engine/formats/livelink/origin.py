@@ -13,6 +13,7 @@ Places = npt.NDArray[np.int64]
 # Absent rows that last longer than this are lost frames; fewer are interpolated, and a single one always is. Recordings
 # miss single frames (16 to 42 ms). Lips meet for p, b and m for 60 ms and more, so a longer gap may hide a closure.
 GAP_S = 0.05
+MAX_HEADER_BYTES = 64 * 1024
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,14 +14,13 @@ from engine.formats.base.reading import AUTOMATIC, ReadAs, Reading
 from engine.formats.base.unfinished import is_unfinished, whole_rows
 from engine.formats.livelink.clock import Clock, clock_of
 from engine.formats.livelink.columns import EXPECTED, ROTATIONS, Columns, columns_of
-from engine.formats.livelink.origin import Origin, header_of, lost_frames
+from engine.formats.livelink.origin import MAX_HEADER_BYTES, Origin, header_of, lost_frames
 from engine.formats.livelink.plain import plain_csv
 from engine.formats.livelink.sides import Judgement, exchange, judge
 from engine.formats.livelink.table import table
 from engine.take import SHAPES, Array, Mask, Take
 
 MAX_COLUMNS = 1024
-MAX_HEADER_BYTES = 64 * 1024
 LARGEST = 1e4  # a weight or an angle beyond this is damage; generators that count in percent stay below
 
 
