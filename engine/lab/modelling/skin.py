@@ -81,7 +81,7 @@ def _nostril_oval(size: float) -> Array:
     turn = np.pi * (1 - np.arange(10) / 5)[:, None]
     across, forward = np.array([0.92, -0.05, -0.38]), np.array([-0.38, 0.2, 0.90])
     oval = size * (0.36 * np.cos(turn) * across + 0.56 * np.sin(turn) * forward)
-    return clay.project(np.array([0.66, -4.2, 10.35]) + oval, rounds=6)
+    return clay.project(np.array([0.80, -4.4, 11.55]) + oval, rounds=6)
 
 
 def _relax(points: Array, free: Mask, averaging: sparse.csr_array, rounds: int = 14, rate: float = 0.5) -> Array:

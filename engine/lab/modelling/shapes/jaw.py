@@ -12,7 +12,7 @@ from engine.lab.modelling.shapes.fields import by_ring
 from engine.lab.modelling.solids import turn_x
 from engine.take import Array
 
-HINGE = np.array([0.0, -1.3, 0.6])
+HINGE = np.array([0.0, -1.6, 0.9])
 OPEN_DEGREES = 24.5
 
 
