@@ -17,7 +17,15 @@ Indices = npt.NDArray[np.int64]
 LIP_RINGS = (2, 4, 8)  # beside the lips, their border, where they touch
 LIP_PLACES = (*range(12, 25, 2), *range(26, 37, 2))  # the left half, from the middle of the upper lip round the corner
 BESIDE_PLACES = (12, 16, 20, 24, 28, 32, 36)
-FOLLOWS = {9: 0.97, 10: 0.9, 11: 0.75, 12: 0.45, 13: 0.2, 14: 0.1, 15: 0.05}  # how far the inside of the mouth goes along
+FOLLOWS = {
+    9: 0.97,
+    10: 0.9,
+    11: 0.75,
+    12: 0.45,
+    13: 0.2,
+    14: 0.1,
+    15: 0.05,
+}  # how far the inside of the mouth goes along
 # Places of the left half of the face and its middle, (x, y) in cm seen from the front.
 FACE: dict[str, tuple[float, float]] = {
     "bridge": (0, 0.0), "back of the nose": (0, -1.8), "tip": (0, -3.6), "columella": (0, -4.95),

@@ -84,7 +84,7 @@ def teeth(contact: Array, *, upper: bool) -> Part:
     columns, middle_y = 61, contact[len(contact) // 2, 1]
     arch, away = _upper_arch(contact, columns) if upper else _lower_arch(contact, columns)
     tooth = np.abs(np.sin(np.pi * np.arange(columns) / 5))[:, None] ** 0.35  # five columns each
-    sign, edge = (1.0, -0.11) if upper else (-1.0, -0.03)
+    sign, edge = (1.0, -0.22) if upper else (-1.0, -0.03)
     # height above the edge, how far forward, whether it is gum
     profile = ((1.25, -0.02, 1), (0.95, 0.0, 1), (0.80, 0.02, 0), (0.35, 0.05, 0), (0.06, 0.03, 0), (0.0, -0.06, 0))
     points, paint = [], []

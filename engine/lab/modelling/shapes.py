@@ -40,6 +40,8 @@ class Modeller:
         motion = self.motions[name]
         moved = self.head.still()
         moved[: len(self.head.skin)] = self.handles.motion(motion.moves * _share(name))
+        if name.startswith("jaw"):
+            self._open_inside(moved, motion, _share(name))
         closed = 1.0 if name.startswith("eyeBlink") else 0.0
         raised = (0.0, 0.0) if closed else motion.lids
         moved += move_lids(self.head, closed, *raised) if not name.startswith("jaw") else 0.0
@@ -47,6 +49,14 @@ class Modeller:
         if gaze is not None:
             moved += _turned_eye(self.head, gaze)
         return self._with_parts(moved, motion, _share(name))
+
+    def _open_inside(self, moved: Array, motion: Motion, share: float) -> None:
+        """Let the inside of the mouth follow the jaw as a rigid body, the more the deeper it lies."""
+        head, points = self.head, self.head.skin
+        rigid = (points - HINGE) @ turn_x(share * motion.jaw).T + HINGE + share * motion.jaw_shift - points
+        deep = np.clip((head.ring - 9) / 3.0, 0.0, 1.0)[:, None]
+        inside = rigid * head.jaw[:, None]
+        moved[: len(points)] = moved[: len(points)] * (1 - deep) + inside * deep
 
     def _with_parts(self, moved: Array, motion: Motion, share: float) -> Array:
         """Add what is no skin: brows follow the skin under them, lower teeth and tongue the jaw."""
