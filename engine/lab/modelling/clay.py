@@ -1,125 +1,77 @@
-"""The head as clay: one signed distance, smoothly blended from solids, and projections onto its surface.
-
-The solids' places and radii are fitted to some 150 points measured on scanned faces: ``sum distance(p)^2`` plus a penalty
-on their change, by least squares (`engine.lab.modelling.fitting`).
-"""
+"""The head as clay: one signed distance, smoothly blended from solids, and ways to land on its surface."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-
 import numpy as np
 
-from engine.lab.modelling.solids import capsule, carve, ellipsoid, turn_x, turn_y, turn_z, union
+from engine.lab.modelling.solids import capsule, carve, ellipsoid, turn_y, turn_z, union
 from engine.take import Array
 
-Vector = tuple[float, float, float]
 EYE_CENTRE = np.array([3.15, 0.0, 7.72])  # of the left eyeball
-EYE_RADIUS = 1.36  # slightly larger than life (1.2): stylised
-LID_THICKNESS = 0.27
+EYE_RADIUS = 1.40  # slightly larger than life (1.2): stylised
 
 
-@dataclass(frozen=True)
-class Ellipsoid:
-    """An ellipsoid of the left half: centre and radii in cm, turned about x, y, z in degrees."""
-
-    centre: Vector
-    radii: Vector
-    turn: Vector = (0.0, 0.0, 0.0)
-    rounding: float = 0.0
-    carves: bool = False
-
-    def distance(self, points: Array) -> Array:
-        """Return the signed distance of points, (n, 3)."""
-        turn = turn_z(self.turn[2]) @ turn_y(self.turn[1]) @ turn_x(self.turn[0]) if any(self.turn) else None
-        return ellipsoid(points, self.centre, self.radii, turn)
-
-
-@dataclass(frozen=True)
-class Rod:
-    """A round rod from one end to the other, in cm, with a radius at each end."""
-
-    start: Vector
-    end: Vector
-    radii: tuple[float, float]
-    rounding: float = 0.0
-    carves: bool = False
-
-    def distance(self, points: Array) -> Array:
-        """Return the signed distance of points, (n, 3)."""
-        return capsule(points, self.start, self.end, *self.radii)
-
-
-Solid = Ellipsoid | Rod
-HEAD = (
-    Ellipsoid((0, 3.12, -0.56), (8.07, 7.98, 8.37), rounding=0),  # cranium
-    Ellipsoid((0, 1.73, 2.67), (7.48, 8.6, 7.93), rounding=2),  # frontal bone
-    Ellipsoid((0, 0.41, -3.1), (6.83, 7.22, 5.54), rounding=2),  # occiput
-    Ellipsoid((0, -2.29, 3.58), (7.22, 6.6, 5.91), rounding=2),  # mid face
-    Ellipsoid((0, -7.12, 5.02), (5.66, 5.25, 5.82), rounding=2),  # lower face
-    Rod((5.14, -5.79, 1.45), (1.44, -10.26, 8.54), (1, 1.08), rounding=2.6),  # jaw line
-    Rod((5.78, -1.99, 0.7), (5.53, -6.93, 1.41), (1.2, 1.02), rounding=2.2),  # angle of the jaw
-    Ellipsoid((0, -6.73, 7.59), (3.08, 2.89, 4.3), rounding=1.6),  # muzzle
-    Ellipsoid((4.5, -3, 6.45), (1.83, 1.31, 2.1), turn=(0, 0, 12), rounding=2.4),  # cheekbone
-    Rod((4.93, -1.9, 4.78), (6.13, -1.41, 0.78), (0.8, 0.7), rounding=2.6),  # its arch to the ear
-    Ellipsoid((3.09, -4.51, 7.37), (2.12, 2.5, 2.23), rounding=2.4),  # fat pad
-    Ellipsoid((4.59, -5.75, 3.88), (1.88, 3.29, 3.39), rounding=2.4),  # cheek
-    Rod((1.81, 2.74, 9.87), (5.01, 1.44, 8.27), (0.91, 0.81), rounding=1.2),  # brow ridge
-    Ellipsoid((0, 1.8, 9.04), (1.41, 1.4, 1.3), rounding=1.2),  # glabella
-    Ellipsoid((0, -10.33, 9.03), (1.91, 1.36, 1.88), rounding=2),  # chin
-)
-NECK = (
-    Rod((0, -6.85, 0.7), (0, -21.63, -3.83), (4.99, 6.68), rounding=0),  # throat
-    Rod((0, -1.88, -3), (0, -13.67, -2.8), (2.95, 2.56), rounding=2.5),  # nape
-    Rod((5.93, -4.74, -1.54), (3.2, -21.33, 2.4), (0.99, 1.02), rounding=2),  # sternomastoid
-    Ellipsoid((0, -13.3, 4.05), (1.16, 1.61, 1.31), rounding=1.8),  # larynx
-)
-SOCKETS = (
-    Ellipsoid((2.63, -0.15, 10.31), (2.09, 1.14, 1.43), turn=(0, 12, 0), rounding=1.3, carves=True),  # socket
-    Ellipsoid((1.44, -0.37, 10.36), (0.75, 0.99, 0.89), rounding=0.9, carves=True),  # its inner corner
-    Ellipsoid((3.13, -2.1, 7.52), (1.9, 0.9, 1.25), turn=(0, 12, 0), rounding=0.9),  # under the eye
-    Ellipsoid((8.83, 1.98, 5.89), (1.48, 2.44, 1.99), rounding=2, carves=True),  # temple
-)
-NOSE = (
-    Rod((0, 0.34, 9.69), (0, -2.94, 12.16), (0.55, 0.62), rounding=0),  # bridge
-    Ellipsoid((0, -3.5, 12.12), (0.9, 0.76, 0.9), rounding=0.8),  # tip
-    Rod((0.66, 0.1, 9.3), (0.7, -3.0, 11.2), (0.6, 0.78), rounding=0.9),  # side wall
-    Rod((0, -4.0, 12.15), (0, -4.5, 11.3), (0.40, 0.42), rounding=0.7),  # columella
-    Ellipsoid((1.3, -3.75, 10.95), (0.66, 0.72, 1.0), turn=(0, -14, 0), rounding=0.6),  # wing
-)
-PHILTRUM = (
-    Rod((0, -5.01, 11.81), (0, -5.73, 11.84), (0.22, 0.26), rounding=0.5, carves=True),  # philtrum
-)
-
-
-def _folded(points: Array) -> Array:
+def _mirrored(points: Array) -> Array:
     """Fold points onto the left half; the rounded fold keeps the distance smooth on the midline."""
     folded = points.copy()
     folded[:, 0] = np.sqrt(points[:, 0] ** 2 + 1e-4)
     return folded
 
 
-def _joined(points: Array, solids: Sequence[Solid], body: Array | None = None) -> Array:
-    """Return the distance to solids joined to a body, or carved from it, one after the other."""
-    for solid in solids:
-        own = solid.distance(points)
-        if body is None:
-            body = own
-        else:
-            body = carve(body, own, solid.rounding) if solid.carves else union(body, own, solid.rounding)
-    assert body is not None
-    return body
+def _cranium(q: Array) -> Array:
+    d = ellipsoid(q, (0, 3.6, -1.2), (7.25, 7.6, 8.2))
+    d = union(d, ellipsoid(q, (0, 3.3, 2.2), (6.5, 7.3, 7.35)), 2.0)  # frontal bone
+    return union(d, ellipsoid(q, (0, 1.0, -3.5), (6.0, 5.0, 5.6)), 2.0)  # occiput
+
+
+def _lower_face(d: Array, q: Array) -> Array:
+    d = union(d, ellipsoid(q, (0, -1.8, 3.2), (6.1, 6.2, 5.6)), 2.0)  # mid face
+    d = union(d, ellipsoid(q, (0, -6.6, 4.0), (4.6, 4.0, 5.0)), 2.0)
+    d = union(d, capsule(q, (4.5, -6.1, 1.6), (1.35, -9.75, 7.5), 0.95, 1.1), 2.6)  # jaw line
+    d = union(d, capsule(q, (5.2, -2.0, 1.0), (4.8, -6.0, 1.7), 1.2, 1.0), 2.2)  # angle of the jaw
+    return union(d, ellipsoid(q, (0, -6.3, 6.5), (3.35, 2.7, 3.85)), 1.6)  # muzzle
+
+
+def _cheeks_and_brow(d: Array, q: Array) -> Array:
+    d = union(d, ellipsoid(q, (4.0, -2.3, 6.1), (1.8, 1.3, 2.1), turn_z(12)), 2.4)  # cheekbone
+    d = union(d, capsule(q, (5.0, -1.9, 4.8), (5.75, -1.4, 1.0), 0.8, 0.7), 2.6)  # its arch to the ear
+    d = union(d, ellipsoid(q, (3.3, -4.4, 6.2), (2.1, 2.3, 2.1)), 2.4)  # fat pads
+    d = union(d, ellipsoid(q, (3.55, -5.0, 3.4), (1.8, 3.0, 3.0)), 2.4)
+    d = union(d, capsule(q, (1.0, 1.45, 8.5), (4.5, 1.75, 6.7), 0.85, 0.75), 1.2)  # brow ridge
+    d = union(d, ellipsoid(q, (0, 1.6, 8.3), (1.3, 1.3, 1.2)), 1.2)  # glabella
+    return union(d, ellipsoid(q, (0, -9.6, 8.3), (1.85, 1.3, 1.6)), 2.2)  # chin
+
+
+def _neck(q: Array) -> Array:
+    d = capsule(q, (0, -6, -0.9), (0, -19, -2.2), 4.0, 4.6)
+    d = union(d, capsule(q, (0, -2.0, -5.6), (0, -13.0, -3.6), 3.0, 3.4), 2.5)  # nape
+    d = union(d, capsule(q, (4.6, -4.5, -1.2), (1.6, -18.5, 2.6), 0.8, 0.9), 2.0)  # sternomastoid
+    return union(d, ellipsoid(q, (0, -13.4, 2.6), (0.9, 1.5, 1.2)), 1.8)  # larynx
+
+
+def _nose(q: Array) -> Array:
+    d = capsule(q, (0, 0.6, 8.75), (0, -2.75, 10.95), 0.55, 0.56)  # bridge
+    d = union(d, ellipsoid(q, (0, -3.10, 11.2), (0.80, 0.68, 0.86)), 0.8)  # tip
+    d = union(d, capsule(q, (0.42, 0.0, 8.3), (0.75, -2.9, 9.8), 0.55, 0.75), 0.9)  # side wall
+    d = union(d, capsule(q, (0, -3.45, 11.1), (0, -3.95, 9.9), 0.36, 0.36), 0.7)  # columella
+    return union(d, ellipsoid(q, (1.15, -3.55, 10.05), (0.56, 0.62, 0.90), turn_y(-14)), 0.55)  # wing
+
+
+def _sockets(d: Array, q: Array) -> Array:
+    d = carve(d, ellipsoid(q, (3.2, -0.15, 9.35), (2.05, 1.25, 1.45), turn_y(12)), 1.3)
+    d = carve(d, ellipsoid(q, (1.45, 0.0, 9.6), (0.75, 1.0, 0.9)), 0.9)
+    d = union(d, ellipsoid(q, (3.15, -2.05, 7.35), (1.9, 0.9, 1.25), turn_y(12)), 0.9)  # fills under the eye
+    d = union(d, np.linalg.norm(q - EYE_CENTRE, axis=1) - (EYE_RADIUS + 0.27), 0.6)  # the eyeball under its lids
+    return carve(d, ellipsoid(q, (8.3, 1.2, 5.4), (1.5, 2.4, 2.0)), 2.0)  # temple
 
 
 def distance(points: Array) -> Array:
     """Return the signed distance of points, (n, 3), to the clay: about right near it, exact in sign."""
-    q = _folded(points)
-    body = union(_joined(q, HEAD), _joined(q, NECK), 1.6)
-    body = _joined(q, SOCKETS, body)
-    body = union(body, np.linalg.norm(q - EYE_CENTRE, axis=1) - (EYE_RADIUS + LID_THICKNESS), 0.6)
-    body = union(body, _joined(q, NOSE), 0.75)
-    return _joined(q, PHILTRUM, body)
+    q = _mirrored(points)
+    d = _cheeks_and_brow(_lower_face(_cranium(q), q), q)
+    d = _sockets(union(d, _neck(q), 1.6), q)
+    d = union(d, _nose(q), 0.75)
+    return carve(d, capsule(q, (0, -4.6, 11.05), (0, -5.5, 11.2), 0.22, 0.26), 0.5)  # philtrum
 
 
 def gradient(points: Array, step: float = 1e-3) -> Array:

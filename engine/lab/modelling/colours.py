@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.lab.modelling import hairline, lips
+from engine.lab.modelling import lips
 from engine.lab.modelling.solids import bell
 from engine.lab.modelling.topology import Topology
 from engine.take import Array
@@ -19,9 +19,7 @@ def skin_colours(topology: Topology) -> Array:
     """Return the skin's colours, (n, 3): blush, lips, lids' margins, the dark of nostrils and mouth."""
     points = topology.points
     paint: Array = np.tile(SKIN, (len(points), 1)) * (1 - 0.10 * _blush(points)[:, None] * np.array([0.2, 1, 1]))
-    paint = paint * (1 - 0.03 * bell(points, (0, -8.8, 8), (4.5, 3, 5))[:, None])  # shadow of a beard
-    grown = 0.9 * hairline.hair_share(points)[:, None]
-    paint = paint * (1 - grown) + 0.85 * np.array(HAIR) * grown
+    paint = paint * (1 - 0.03 * bell(points, (0, -8, 7), (4.5, 3, 5))[:, None])  # shadow of a beard
     _paint_lips(paint, topology)
     for side in ("left", "right"):
         lids, nostril = topology.eyes[side], topology.nostrils[side]

@@ -35,7 +35,7 @@ def positions() -> tuple[Array, Array]:
 
 def open_elevation(along: Array, lid: Array) -> Array:
     """Return the elevation of the open margin in degrees."""
-    upper = 18.5 * (1 - np.abs(along) ** 2.6) ** 0.8 * (1 - 0.10 * along)
+    upper = 20.0 * (1 - np.abs(along) ** 2.6) ** 0.8 * (1 - 0.10 * along)
     lower = -20.5 * (1 - np.abs(along) ** 2.4) ** 0.85 * (1 + 0.10 * along)
     return np.where(lid > 0, upper, np.where(lid < 0, lower, 0.0))
 

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from engine.lab.modelling import clay, colours, eyelids
-from engine.lab.modelling.hairline import CAP_CENTRE, HAIRLINE
 from engine.lab.modelling.parts import Part, fan, sheet, sheet_mirror
 from engine.lab.modelling.solids import mix, smooth_step
 from engine.take import Array
 
 LASH_COLUMNS = 45
 CAP_ROWS, CAP_COLUMNS = 20, 96
+# height of the hairline in cm by degrees from the front: forehead, temple, sideburn, over the ear, nape
+_HAIRLINE = PchipInterpolator(
+    [0, 12, 27, 40, 52, 62, 69, 76, 83, 92, 105, 113, 123, 137, 155, 180],
+    [6.5, 6.55, 7.0, 6.3, 4.3, 2.4, 0.5, 0.1, 1.6, 2.15, 1.9, 0.5, -1.7, -3.5, -4.6, -5.0],
+)
+_CAP_CENTRE = np.array([0.0, 1.5, -0.8])
 _WHORL = np.array([0.0, 0.88, -0.475])  # where the hair grows from, at the back of the crown
 
 
@@ -65,15 +71,15 @@ def cap() -> Part:
     rim = _rim_directions(degrees)
     ways = mix(rim, _WHORL, share[:, None, None])
     top = smooth_step(-0.2, 0.9, (ways / np.linalg.norm(ways, axis=-1, keepdims=True))[..., 1])
-    locks, grain = _locks(), _grain()
+    locks = _locks()
     rise = np.sqrt(np.clip(share[:, None] / mix(0.45, 0.16, top), 0, 1))  # cut short at sides and nape
-    height = rise * (mix(0.13, 0.36, top) + 0.04 * locks * (1 - share[:, None]) + 0.03 * grain)
+    height = rise * (mix(0.34, 0.72, top) + 0.10 * locks * (1 - share[:, None]))
     height[0] = -0.05  # the border dips into the scalp
-    scalp = clay.cast(np.tile(CAP_CENTRE, (ways.size // 3, 1)), ways.reshape(-1, 3))
+    scalp = clay.cast(np.tile(_CAP_CENTRE, (ways.size // 3, 1)), ways.reshape(-1, 3))
     points = scalp + clay.normals(scalp) * height.reshape(-1, 1)
-    whorl = clay.cast(CAP_CENTRE[None], _WHORL[None])
-    points = np.concatenate([points, whorl + clay.normals(whorl) * 0.37])
-    tint = (1 + 0.10 * locks * (1 - share[:, None] ** 2) + 0.16 * grain).reshape(-1, 1)
+    whorl = clay.cast(_CAP_CENTRE[None], _WHORL[None])
+    points = np.concatenate([points, whorl + clay.normals(whorl) * 0.74])
+    tint = (1 + 0.22 * locks * (1 - share[:, None] ** 2)).reshape(-1, 1)
     paint = np.concatenate([np.array(colours.HAIR) * tint, [colours.HAIR]])
     last = (CAP_ROWS - 1) * CAP_COLUMNS + np.arange(CAP_COLUMNS)
     triangles = np.concatenate([sheet(CAP_ROWS, CAP_COLUMNS, closed=True)[:, ::-1], fan(last, len(points) - 1)])
@@ -87,21 +93,15 @@ def _locks() -> Array:
     return np.concatenate([half, half[-2:0:-1]])
 
 
-def _grain() -> Array:
-    """Return how far single tufts stand out, about -1..1, the same on both sides, (rows, columns)."""
-    half = np.random.default_rng(6).uniform(-1, 1, (CAP_ROWS, CAP_COLUMNS // 2 + 1))
-    return np.concatenate([half, half[:, -2:0:-1]], axis=1)
-
-
 def _rim_directions(degrees: Array) -> Array:
     """Return the directions from the cap's centre to the hairline, found by bisection, (columns, 3)."""
-    height = HAIRLINE(np.minimum(degrees, 360 - degrees))
+    height = _HAIRLINE(np.minimum(degrees, 360 - degrees))
     turn = np.radians(degrees)
     low, high = np.full(len(turn), -1.1), np.full(len(turn), 1.4)
     for _ in range(16):
         middle = 0.5 * (low + high)
         level = np.cos(middle)
         ways = np.column_stack([level * np.sin(turn), np.sin(middle), level * np.cos(turn)])
-        hits = clay.cast(np.tile(CAP_CENTRE, (len(turn), 1)), ways)
+        hits = clay.cast(np.tile(_CAP_CENTRE, (len(turn), 1)), ways)
         low, high = np.where(hits[:, 1] < height, middle, low), np.where(hits[:, 1] < height, high, middle)
     return ways

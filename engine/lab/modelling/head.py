@@ -51,9 +51,9 @@ def landmarks(head: Sculpture) -> dict[str, int]:
         "lip_inner_lower_left": mouth[8][-left],
         "lip_inner_upper_right": mouth[8][right],
         "lip_inner_lower_right": mouth[8][-right],
-        "nose_bridge": _nearest(head, (0, 0.0, 10.7)),
-        "chin": _nearest(head, (0, -10.6, 10.9)),
-        "nose_tip": _nearest(head, (0, -3.6, 13.0)),
+        "nose_bridge": _nearest(head, (0, 0.3, 9.4)),
+        "chin": _nearest(head, (0, -9.9, 9.9)),
+        "nose_tip": _nearest(head, (0, -3.1, 11.6)),
     }
     for side in ("left", "right"):
         margin = eyes[side][9]

@@ -10,9 +10,9 @@ from engine.take import Array
 
 POINTS = 48  # of a ring: 0 at the right corner, over the upper lip to 24 at the left one, back below
 SKIN_RINGS = 4  # rings of the mouth block outside the lips' own
-SLIT_Y = -7.07
-HALF_WIDTH = 2.46
-ARCH_CENTRE_Z = 7.7  # of the cylinder that lips and teeth follow
+SLIT_Y = -6.42
+HALF_WIDTH = 2.36
+ARCH_CENTRE_Z = 7.3  # of the cylinder that lips and teeth follow
 
 
 def positions() -> tuple[Array, Array]:
@@ -96,6 +96,6 @@ def _bag_rings() -> list[Array]:
     """Return the bag round the dental arches and its one vertex at the back."""
     angle = 2 * np.pi * np.arange(POINTS) / POINTS
     across, above = -np.cos(angle), np.sin(angle)
-    sizes = ((8.3, 2.9, 2.1), (6.6, 2.8, 2.0), (4.6, 1.9, 1.3))
-    loops = [np.column_stack([across * w, -7.3 + above * h, np.full(POINTS, z)]) for z, w, h in sizes]
-    return [*loops, np.array([[0, -7.4, 4.0]])]
+    sizes = ((7.6, 2.9, 2.1), (6.0, 2.8, 2.0), (4.2, 1.9, 1.3))
+    loops = [np.column_stack([across * w, -6.6 + above * h, np.full(POINTS, z)]) for z, w, h in sizes]
+    return [*loops, np.array([[0, -6.7, 3.6]])]

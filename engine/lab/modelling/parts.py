@@ -84,7 +84,7 @@ def teeth(contact: Array, *, upper: bool) -> Part:
     columns, middle_y = 61, contact[len(contact) // 2, 1]
     arch, away = _upper_arch(contact, columns) if upper else _lower_arch(contact, columns)
     tooth = np.abs(np.sin(np.pi * np.arange(columns) / 5))[:, None] ** 0.35  # five columns each
-    sign, edge = (1.0, -0.22) if upper else (-1.0, -0.03)
+    sign, edge = (1.0, -0.11) if upper else (-1.0, -0.03)
     # height above the edge, how far forward, whether it is gum
     profile = ((1.25, -0.02, 1), (0.95, 0.0, 1), (0.80, 0.02, 0), (0.35, 0.05, 0), (0.06, 0.03, 0), (0.0, -0.06, 0))
     points, paint = [], []
@@ -132,9 +132,9 @@ def tongue() -> Part:
     height = 0.62 * (1 - 0.45 * along)
     width[-1], height[-1] = 0.05, 0.02
     x, y = width * np.sin(turn), height * np.cos(turn)
-    y = y - 0.16 * np.exp(-((x / 0.25) ** 2)) * (y > 1e-9) - 8.25 + 0.35 * np.sin(along * 2.6)
-    tube = np.stack([x, y, np.broadcast_to(5.3 + 4.4 * along, x.shape)], axis=-1).reshape(-1, 3)
-    points = np.concatenate([tube, [[0, -8.25 + 0.35 * np.sin(2.6), 9.75]]])
+    y = y - 0.16 * np.exp(-((x / 0.25) ** 2)) * (y > 1e-9) - 7.55 + 0.35 * np.sin(along * 2.6)
+    tube = np.stack([x, y, np.broadcast_to(4.6 + 4.3 * along, x.shape)], axis=-1).reshape(-1, 3)
+    points = np.concatenate([tube, [[0, -7.55 + 0.35 * np.sin(2.6), 8.95]]])
     tip, last = len(tube), (rows - 1) * columns + np.arange(columns)
     triangles = np.concatenate([sheet(rows, columns, closed=True), fan(last, tip)[:, [1, 0, 2]]])
     mirror = np.append(sheet_mirror(rows, columns, closed=True), tip)
@@ -149,7 +149,7 @@ def ear() -> Part:
     )  # from the middle outwards; round, from the back over the top
     relief, lift, shadow, (across, above) = _ear_relief(out, turn)
     tilt = np.radians(-14)
-    origin = np.array([7.75, -1.3, -0.6])
+    origin = np.array([6.75, -1.1, -0.35])
     y = above * np.cos(tilt) + across * np.sin(tilt) * 0.9
     z = above * np.sin(tilt) * 0.9 - across * np.cos(tilt)
     behind = np.minimum(lift * 0.75 - 0.30 - 0.25 * (1 - out), relief - 0.12)

@@ -79,9 +79,9 @@ def _place_nostrils(points: Array, fixed: Mask, topology: Topology) -> None:
 def _nostril_oval(size: float) -> Array:
     """Return a loop on the underside of the left half of the nose, from its inner side over the front, (10, 3)."""
     turn = np.pi * (1 - np.arange(10) / 5)[:, None]
-    across, forward = np.array([0.92, -0.05, -0.38]), np.array([-0.38, 0.38, 0.86])
-    oval = size * (0.44 * np.cos(turn) * across + 0.60 * np.sin(turn) * forward)
-    return clay.project(np.array([0.95, -4.25, 11.6]) + oval, rounds=6)
+    across, forward = np.array([0.92, -0.05, -0.38]), np.array([-0.38, 0.2, 0.90])
+    oval = size * (0.36 * np.cos(turn) * across + 0.56 * np.sin(turn) * forward)
+    return clay.project(np.array([0.66, -4.2, 10.35]) + oval, rounds=6)
 
 
 def _relax(points: Array, free: Mask, averaging: sparse.csr_array, rounds: int = 14, rate: float = 0.5) -> Array:

@@ -64,19 +64,14 @@ def layout() -> Layout:
         rows.append((2.5, 1.0, slope, slope))
     rows += [(2.5, 1.5, 0.20, 0.22), (2.45, 1.8, 0.10, 0.12), (2.3, 2.0, 0.03, 0.04)]
     eye = len(rows)
-    rows += [(y, 2.0, 0, 0) for y in (1.8, 1.25, 0.7, 0.1, -0.5, -1.05, -1.6, -2.05, -2.5, -2.95, -3.4, -3.85)]
+    rows += [(y, 2.0, 0, 0) for y in (1.8, 1.25, 0.7, 0.1, -0.5, -1.05, -1.6, -2.0, -2.4, -2.8, -3.15, -3.5)]
     nostril = len(rows)
-    rows += [(y, 2.0, 0, 0) for y in (-4.2, -4.45, -4.7)]
+    rows += [(y, 2.0, 0, 0) for y in (-3.78, -4.0, -4.2)]
     mouth = len(rows)
-    rows += [(y, 2.0, 0, 0) for y in (-5.0, -5.55, -6.1, -6.65, -7.1, -7.6, -8.15, -8.7, -9.25)]
-    rows += [(y, 2.0, 0, 0) for y in (-9.85, -10.5, -11.15, -11.7)]
-    rows += [
-        (-10.6, 4.4, -0.27, -0.13),
-        (-10.7, 4.4, -0.45, -0.16),
-        (-10.8, 4.2, -0.75, -0.20),
-        (-10.8, 3.4, -1.15, -0.27),
-    ]
-    rows += [(y, -0.8, 0, 0) for y in (-14.2, -15.0, -15.9, -16.9, -17.9, -18.9)]
+    rows += [(y, 2.0, 0, 0) for y in (-4.45, -5.0, -5.5, -6.0, -6.45, -6.95, -7.45, -7.95, -8.45)]
+    rows += [(y, 2.0, 0, 0) for y in (-8.95, -9.5, -10.05, -10.55)]
+    rows += [(-9.6, 3.8, -0.27, -0.13), (-9.7, 3.8, -0.45, -0.16), (-9.8, 3.6, -0.75, -0.20), (-9.8, 3.0, -1.15, -0.27)]
+    rows += [(y, -0.8, 0, 0) for y in (-12.7, -13.5, -14.4, -15.4, -16.4, -17.4)]
     return Layout(
         rows=np.array(rows, np.float64),
         eye=Block(eye, eye + 6, 3, 15),
@@ -92,7 +87,7 @@ def column_angle(column: Array, y: Array) -> Array:
     mouth = np.where(steps <= 8, 3.65 * steps, 29.2 + (52 - 29.2) / 7 * (steps - 8))
     side = 52 + (180 - 52) * (steps - 15) / (HALF_COLUMNS - 15)
     nose = np.interp(steps, [0, 6, 15], [0, 12.6, 52])
-    front = mix(mix(eyes, mouth, smooth_step(-1.7, -5.0, y)), nose, np.exp(-(((y + 4.15) / 0.9) ** 2)))
+    front = mix(mix(eyes, mouth, smooth_step(-1.5, -4.5, y)), nose, np.exp(-(((y + 3.7) / 0.9) ** 2)))
     return np.radians(np.where(steps <= 15, front, side)) * np.sign(column)
 
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from engine.lab.modelling import eyelids, hair, handles
-from engine.lab.modelling.clay import EYE_CENTRE
-from engine.lab.modelling.handles import Handles
-from engine.lab.modelling.motions import Motion, fitted
-from engine.lab.modelling.sculpture import Sculpture
+from engine.lab.sculpting import eyelids, hair, handles
+from engine.lab.sculpting.clay import EYE_CENTRE
+from engine.lab.sculpting.handles import Handles
+from engine.lab.sculpting.motions import Motion, fitted
+from engine.lab.sculpting.sculpture import Sculpture
 from engine.lab.modelling.solids import smooth_step, turn_x, turn_y
 from engine.take import SHAPES, Array
 

@@ -9,8 +9,8 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from engine.lab.modelling.lips import POINTS
-from engine.lab.modelling.sculpture import Sculpture
+from engine.lab.sculpting.lips import POINTS
+from engine.lab.sculpting.sculpture import Sculpture
 from engine.take import Array, Mask
 
 Indices = npt.NDArray[np.int64]
