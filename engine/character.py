@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from engine import assets
 from engine.errors import AssetError, EditError, EngineError
-from engine.formats.archive import arrays_of
-from engine.formats.atomic import write_bytes
+from engine.formats.base.archive import arrays_of
+from engine.formats.base.atomic import write_bytes
 from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
 BUNDLED = assets.HEAD

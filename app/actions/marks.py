@@ -55,16 +55,18 @@ class MarkActions(QObject):
     def remove_pin(self) -> None:
         """Remove the pin at the playhead; the pose stays as it is."""
         session = self._session
-        rest = tuple(pin for pin in session.marks.pins if pin.frame != session.playhead)
-        if rest == session.marks.pins:
+        rest = tuple(pin for pin in session.document.marks.pins if pin.frame != session.view.playhead)
+        if rest == session.document.marks.pins:
             self.failed.emit("There is no pin on this frame.", "Right-click one in the pins lane.")
         else:
-            session.undo.push(MarkCommand(session, replace(session.marks, pins=rest), "remove a pin"))
+            session.document.undo.push(
+                MarkCommand.of(session.document, replace(session.document.marks, pins=rest), "remove a pin")
+            )
 
     def _note_here(self) -> Note | None:
         """Return the newest note on the frame at the playhead."""
         chosen = self._notes.chosen
-        here = [note for note in self._session.marks.notes if note.frame == self._session.playhead]
+        here = [note for note in self._session.document.marks.notes if note.frame == self._session.view.playhead]
         if not here:
             self.failed.emit("There is no note on this frame.", "Right-click one in the notes lane.")
         return chosen if chosen in here else here[-1] if here else None

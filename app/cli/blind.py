@@ -21,7 +21,7 @@ def make(
 ) -> None:
     """Write the movies, an empty answer table beside them, and the key elsewhere."""
     from app.preview import movie
-    from engine.formats.atomic import write_bytes
+    from engine.formats.base.atomic import write_bytes
     from engine.lab.evaluate.blind import exhibits, key_of
     from engine.lab.evaluate.inpaint import pieces_to_measure
 

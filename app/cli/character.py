@@ -185,7 +185,7 @@ def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None)
 
 def _followed(head: Character, performance: Carried, points: Path | None) -> dict[str, int]:
     """Return which vertex of a head follows which marker, by a file or by what the markers were taken for."""
-    from engine.formats import markers_layout
+    from engine.formats.markers import layout as markers_layout
     from engine.spacetime.layout import standard
 
     if points is not None:

@@ -13,7 +13,7 @@ from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_
 from app.printing import remark, say
 from engine.errors import EditError, FormatError
 from engine.formats import format_of, read_take
-from engine.formats.textfile import read_text
+from engine.formats.base.textfile import read_text
 from engine.words import counted
 
 if TYPE_CHECKING:

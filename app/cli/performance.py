@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from app.cli.reading import open_take
 from engine.errors import EditError
-from engine.formats.content import require_file, unread
-from engine.formats.livelink_plain import HEADER_BYTES, form_of
+from engine.formats.base.content import require_file, unread
+from engine.formats.livelink.plain import HEADER_BYTES, form_of
 from engine.words import counted
 
 if TYPE_CHECKING:

@@ -145,8 +145,8 @@ def _carried(
     performance: Carried, character: Path | None, landmarks: Path | None, matching: Matching
 ) -> tuple[Take, Character]:
     from engine.character import bundled
-    from engine.formats import markers_layout
     from engine.formats.characters.opening import character_of
+    from engine.formats.markers import layout as markers_layout
     from engine.spacetime.layout import named
     from engine.spacetime.retarget import retarget as carry
 

@@ -66,7 +66,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
     @property
     def tool(self) -> Tool:
         """The tool that the mouse goes to."""
-        return self.tools[self.session.tool]
+        return self.tools[self.session.view.tool]
 
     @property
     def moving(self) -> bool:
@@ -122,8 +122,8 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         step(self.lanes, self.session)
 
     def _show_marks(self) -> None:
-        self._underlay.selection = self.session.selection
-        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.open_spans]
+        self._underlay.selection = self.session.view.selection
+        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.document.open_spans]
         self._underlay.update()
         self._playhead.update()
 
@@ -141,7 +141,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self.setCursor(self.tool.cursor)
 
     def _lay_lanes(self) -> None:
-        wanted = self.session.lanes
+        wanted = self.session.view.lanes
         if [lane.key for lane in self.lanes] == wanted:
             return
         for lane in self.lanes:
@@ -173,21 +173,21 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self.tool.placed()
 
     def _arrange(self) -> None:
-        keys, active = [lane.key for lane in self.lanes], self.session.lane
+        keys, active = [lane.key for lane in self.lanes], self.session.view.lane
         for lane in self.lanes:
             lane.gutter.active = lane.key == active
-            lane.gutter.expanded = lane.key in self.session.expanded
+            lane.gutter.expanded = lane.key in self.session.view.expanded
             lane.gutter.update()
         self._ring.moved()
         self._growth.choose(keys, active, at_once=not self.isVisible())
         self.setMinimumHeight(MIN_LANE_PX * len(self.lanes))
 
     def _show_playhead(self) -> None:
-        frame = self.session.playhead
+        frame = self.session.view.playhead
         self._playhead.frame = frame
         self._playhead.update()
         for lane in self.lanes:
-            lane.gutter.value = self.session.value(lane.key, frame)
+            lane.gutter.value = self.session.document.value(lane.key, frame)
             lane.gutter.update()
 
     def show_brush(self, lane: Lane | None, frames: tuple[float, float] | None) -> None:
@@ -221,7 +221,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
 
     def _active_box(self) -> QRectF:
         """Return the box of the lane that is worked on, its name included; an empty one without the keyboard."""
-        shown = next((lane for lane in self.lanes if lane.key == self.session.lane), None)
+        shown = next((lane for lane in self.lanes if lane.key == self.session.view.lane), None)
         if shown is None or not self.hasFocus():
             return QRectF()
         return shown.scene_box().adjusted(-GUTTER_PX, 0, 0, 0)
@@ -231,7 +231,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
 
     def _x_of(self, frame: float) -> float:
         box = self.lanes[0].scene_box()
-        first, last = self.session.view
+        first, last = self.session.view.range
         return box.left() + (frame - first) / max(1e-9, last - first) * box.width()
 
     def lane_at(self, at: QPointF) -> int | None:
@@ -253,12 +253,12 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         """Give the press to the tool; the middle button pans; nothing moves under the pointer until it is let go."""
         self._growth.hold()
         if event.button() == Qt.MouseButton.MiddleButton:
-            self._pan_from = (event.position(), self.session.view)
+            self._pan_from = (event.position(), self.session.view.range)
             return
         lane = self.lane_at(event.position())
         if event.button() != Qt.MouseButton.LeftButton or lane is None:
             return
-        self.session.choose_lane(lane)
+        self.session.view.choose_lane(lane)
         if event.position().x() < GUTTER_PX:
             self._named = lane
         else:
@@ -271,7 +271,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         if self._pan_from is not None:
             origin, (first, last) = self._pan_from
             shift = (origin.x() - event.position().x()) / max(1.0, self._lanes_box().width()) * (last - first)
-            self.session.set_view(first + shift, last + shift)
+            self.session.view.set_range(first + shift, last + shift)
             return
         in_gutter = event.position().x() < GUTTER_PX and not self.tool.busy
         self.setCursor(Qt.CursorShape.PointingHandCursor if in_gutter else self.tool.cursor)
@@ -289,7 +289,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
             self.tool.release(event)
             at = event.position()
             if named is not None and at.x() < GUTTER_PX * EXPANDER and self.lane_at(at) == named:
-                self.session.expand(named)
+                self.session.view.expand(named)
         if not event.buttons():
             self._released()
 
@@ -304,13 +304,13 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
             return
         at, lane = QPointF(event.pos()), self.lane_at(QPointF(event.pos()))
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
-            box = self.lane(self.session.lane).scene_box()
-            place = QPointF(min(max(self._x_of(self.session.playhead), box.left()), box.right()), box.center().y())
+            box = self.lane(self.session.view.lane).scene_box()
+            place = QPointF(min(max(self._x_of(self.session.view.playhead), box.left()), box.right()), box.center().y())
             self.menu_wanted.emit("here", self.mapToGlobal(self.mapFromScene(place)))
         elif lane is not None:
-            self.session.choose_lane(lane)
+            self.session.view.choose_lane(lane)
             if at.x() >= GUTTER_PX:
-                self.session.move_playhead(round(self.frame_at(at)))
+                self.session.view.move_playhead(round(self.frame_at(at)))
             self.menu_wanted.emit("curve" if at.x() >= GUTTER_PX else "lane", event.globalPos())
 
     def leaveEvent(self, event: object) -> None:
@@ -324,11 +324,11 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         if event.buttons() & Qt.MouseButton.LeftButton or event.modifiers() & Qt.KeyboardModifier.AltModifier:
             self.tool.wheel(notches)
         elif event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(turn.x()) > abs(turn.y()):
-            first, last = self.session.view
+            first, last = self.session.view.range
             shift = -notches * 0.1 * (last - first)
-            self.session.set_view(first + shift, last + shift)
+            self.session.view.set_range(first + shift, last + shift)
         elif event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            self.session.zoom_view(WHEEL_STEP**notches, self.frame_at(event.position()))
+            self.session.view.zoom(WHEEL_STEP**notches, self.frame_at(event.position()))
         else:
             event.ignore()  # for the scroll area around the lanes
             return

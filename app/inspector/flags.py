@@ -58,7 +58,7 @@ class FlagsSection(Section):
             self._show_here()
 
     def _list_all(self) -> None:
-        found, fps = self.session.flags, self.session.take.fps
+        found, fps = self.session.document.flags, self.session.document.take.fps
         self._flags = (found or ())[:LISTED]
         with QSignalBlocker(self.list):
             self.list.clear()
@@ -71,7 +71,7 @@ class FlagsSection(Section):
 
     def _show_here(self) -> None:
         """Tell what is wrong at the playhead, the heaviest first, and mark its row."""
-        frame = self.session.playhead
+        frame = self.session.view.playhead
         here = [row for row, flag in enumerate(self._flags) if flag.start <= frame < flag.stop]
         here.sort(key=lambda row: (self._flags[row].start != frame, -self._flags[row].weight))
         self.here.setText("\n".join(self._flags[row].sentence for row in here[:2]))
@@ -81,7 +81,7 @@ class FlagsSection(Section):
 
     def _go_to(self, item: QListWidgetItem) -> None:
         flag = self._flags[self.list.row(item)]
-        self.session.move_playhead(flag.start)
+        self.session.view.move_playhead(flag.start)
 
     def _open_menu(self, at: QPoint) -> None:
         item = self.list.itemAt(at)

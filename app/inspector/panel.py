@@ -52,4 +52,4 @@ class Inspector(QFrame):
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.TOOL):
             for section in self._sections:
-                section.setVisible(section.needed and (not section.tools or self._session.tool in section.tools))
+                section.setVisible(section.needed and (not section.tools or self._session.view.tool in section.tools))

@@ -183,7 +183,7 @@ class LiveSection(Section):
                 spool.close(remove=True)
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE and self.session.take is self._waiting:
+        if change & Change.TAKE and self.session.document.take is self._waiting:
             self._waiting = None
 
     def _close_spool(self, *, remove: bool) -> None:

@@ -71,7 +71,7 @@ class NotesSection(Section):
 
     def delete(self, note: Note) -> None:
         """Delete a note."""
-        self._put([each for each in self.session.marks.notes if each is not note], "delete a note")
+        self._put([each for each in self.session.document.marks.notes if each is not note], "delete a note")
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Keep the old text of a note on Escape."""
@@ -88,7 +88,7 @@ class NotesSection(Section):
     def _typed(self) -> None:
         """Keep what was typed: as a new note on the frame at the playhead, or as the new text of the one changed."""
         text, old, session = self.entry.text().strip(), self._changing, self.session
-        notes = list(session.marks.notes)
+        notes = list(session.document.marks.notes)
         now = datetime.now(UTC).isoformat(timespec="seconds")
         if old is not None and old in notes:
             if text and text != plain(old.text):
@@ -97,23 +97,23 @@ class NotesSection(Section):
             elif not text:
                 self.delete(old)
         elif text:
-            self._put([*notes, Note(session.playhead, self.author(), now, text)], "add a note")
+            self._put([*notes, Note(session.view.playhead, self.author(), now, text)], "add a note")
         self._take_up(None)
 
     def _put(self, notes: list[Note], title: str) -> None:
         session = self.session
         ordered = tuple(sorted(notes, key=lambda each: each.frame))
-        session.undo.push(MarkCommand(session, replace(session.marks, notes=ordered), title))
+        session.document.undo.push(MarkCommand.of(session.document, replace(session.document.marks, notes=ordered), title))
 
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.MARKS):
-            if self._changing is not None and self._changing not in self.session.marks.notes:
+            if self._changing is not None and self._changing not in self.session.document.marks.notes:
                 self._take_up(None)  # it is gone: what is typed is no change of it any more
             self._show()
 
     def _show(self) -> None:
         empty(self._list)
-        notes, fps = self.session.marks.notes, self.session.take.fps
+        notes, fps = self.session.document.marks.notes, self.session.document.take.fps
         for note in notes[:SHOWN]:
             text = plain(note.text)
             shown = text if len(text) <= SHOWN_CHARACTERS else f"{text[: SHOWN_CHARACTERS - 1]}…"
@@ -130,7 +130,7 @@ class NotesSection(Section):
 
     def _go_to(self, note: Note, *_: bool) -> None:
         self.chosen = note
-        self.session.move_playhead(note.frame)
+        self.session.view.move_playhead(note.frame)
 
     def _open_menu(self, note: Note, button: QPushButton, at: QPoint) -> None:
         self._go_to(note)

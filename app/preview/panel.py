@@ -333,12 +333,12 @@ class PreviewPanel(QFrame):
             self.drawing.submit(Wanted(Shot(tuple(faces), STRIP_CAMERA, size), self._character, strip=True), "strip")
 
     def _show_frame(self) -> None:
-        self._frame_label.setText("live" if self._live is not None else f"frame {self._session.playhead:,}")
+        self._frame_label.setText("live" if self._live is not None else f"frame {self._session.view.playhead:,}")
 
     def _shot(self) -> Shot:
         session, view = self._session, self.face.view
-        after = session.frame_weights(session.playhead)
-        before = np.asarray(session.original.weights[session.playhead])
+        after = session.document.frame_weights(session.view.playhead)
+        before = np.asarray(session.document.original.weights[session.view.playhead])
         camera = self.face.camera
         if self._live is not None:
             return Shot((self._live,), camera)
@@ -399,11 +399,11 @@ class PreviewPanel(QFrame):
 
     def _on_change(self, change: Change) -> None:
         if change & Change.CHARACTER:
-            self._character = self._session.character
+            self._character = self._session.document.character
         if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.CHARACTER):
             session = self._session
             self._show_frame()
-            drafted = change & Change.DRAFT and session.draft is not None and self._inference.busy
+            drafted = change & Change.DRAFT and session.document.draft is not None and self._inference.busy
             self.refresh(since=self._inference.since if drafted else 0.0)
 
     def showEvent(self, event: object) -> None:

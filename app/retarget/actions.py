@@ -99,7 +99,7 @@ class RetargetActions(QObject):
 
     def retarget_tool(self) -> None:
         """Work with the Retarget tool."""
-        self._session.choose_tool("retarget")
+        self._session.view.choose_tool("retarget")
 
     def open_markers(self) -> None:
         """Choose a capture to carry."""
@@ -156,7 +156,7 @@ class RetargetActions(QObject):
         if frame is None:
             self.failed.emit("Nothing was solved from labels yet.", "Label some frames and solve; then it can be told.")
         else:
-            self._session.move_playhead(frame)
+            self._session.view.move_playhead(frame)
 
     def save_labels(self) -> None:
         """Choose a file and write the labels."""
@@ -192,7 +192,7 @@ class RetargetActions(QObject):
 
     def _to_file(self, title: str, stem: str, kinds: Mapping[str, str], use: Callable[[Path], None]) -> None:
         path, _ = ask_where(
-            self._window, title, beside(self._session.path, f"{stem}{next(iter(kinds.values()))}"), kinds
+            self._window, title, beside(self._session.document.path, f"{stem}{next(iter(kinds.values()))}"), kinds
         )
         if path is not None:
             self._try(lambda: use(path))

@@ -82,7 +82,7 @@ class HeadSection(Section):
         made, refused = state.target.imported, state.refused
         reading = refused[1] if refused else state.target.reading
         self.needed = made is not None or refused is not None
-        self.setVisible(self.needed and self.session.tool in self.tools)
+        self.setVisible(self.needed and self.session.view.tool in self.tools)
         for part in (self._frame, self.table, self.all_shapes):
             part.setVisible(made is not None or (refused is not None and part is self._frame))
         for box, value in ((self.unit, reading.unit), (self.up, reading.up), (self.facing, _turn(reading.facing_deg))):

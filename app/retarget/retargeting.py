@@ -102,7 +102,7 @@ class Retargeting(QObject):
         self.refused: tuple[Path, Reading] | None = None
         self._opening_head: tuple[Path | None, Reading] | None = None
         session.changed.connect(self._on_change)
-        session.undo.indexChanged.connect(self._follow)
+        session.document.undo.indexChanged.connect(self._follow)
 
     # --- what there is
 
@@ -113,7 +113,9 @@ class Retargeting(QObject):
         """What is carried."""
         if self._performance is None:
             session = self._session
-            self._performance = Performance(session.take, session.character or bundled(), self.capture)
+            self._performance = Performance(
+                session.document.take, session.document.character or bundled(), self.capture
+            )
         return self._performance
 
     @property
@@ -139,7 +141,7 @@ class Retargeting(QObject):
         label = self.label_at(frame)
         base = None if self.result is None else self.result.weights_at(frame)
         if base is None and self.method == LABELS and self.capture is None:
-            base = np.asarray(self._session.take.weights[frame])
+            base = np.asarray(self._session.document.take.weights[frame])
         if base is None and self.live is not None:
             nearest = int(np.clip(frame, self.live.start, self.live.start + len(self.live.take) - 1))
             base = self.live.weights_at(nearest)
@@ -149,7 +151,7 @@ class Retargeting(QObject):
 
     def label_at(self, frame: int) -> dict[str, float]:
         """Return the label of a frame with what is being posed there, weights by shape name."""
-        posing = self.draft_pose if frame == self._session.playhead else {}
+        posing = self.draft_pose if frame == self._session.view.playhead else {}
         return {**self.target.labels.get(frame, {}), **posing}
 
     # --- source and target
@@ -234,7 +236,9 @@ class Retargeting(QObject):
         before = self.capture, self._capture_path
         self.capture, self._capture_path = made.source, path
         self.capture_opened.emit(made.source.take)
-        if self._session.take is not made.source.take:  # edits would have been lost, and the user would rather not
+        if (
+            self._session.document.take is not made.source.take
+        ):  # edits would have been lost, and the user would rather not
             self.capture, self._capture_path = before
         else:
             self._put(made.on(self.target))
@@ -246,7 +250,7 @@ class Retargeting(QObject):
 
     def change_target(self, target: Target, title: str) -> None:
         """Put another target in place, or another state of it, as one undo step."""
-        undo = self._session.undo
+        undo = self._session.document.undo
         clean = undo.isClean()
         undo.push(TargetCommand(self._put, self.target, target, title))
         if clean:
@@ -270,8 +274,8 @@ class Retargeting(QObject):
 
     def ask_live(self) -> None:
         """Carry the frames around the playhead, where they are not known yet."""
-        playhead, frames = self._session.playhead, len(self._session.take)
-        if not self.ready or self.result is not None or self._session.tool != "retarget":
+        playhead, frames = self._session.view.playhead, len(self._session.document.take)
+        if not self.ready or self.result is not None or self._session.view.tool != "retarget":
             return
         if self.method == LABELS and self.capture is None:
             return
@@ -334,7 +338,7 @@ class Retargeting(QObject):
         if result is None or target.head is None:
             return
         session, head = self._session, target.head
-        take = session.take
+        take = session.document.take
         inputs = {
             "target": str(target.path or ""),
             "source": self.capture.take.name if self.capture else take.name,
@@ -353,9 +357,11 @@ class Retargeting(QObject):
             return Patch.between(take, take.with_weights(result.take.weights), (0, len(take)))
 
         def then(patch: Patch) -> None:
-            if session.take is take:
+            if session.document.take is take:
                 self._kept_heads.know(inputs, None if head is bundled() else head)
-                session.undo.push(EditCommand(session, patch, f"carry to {head.name}", kind=KIND, inputs=inputs))
+                session.document.undo.push(
+                    EditCommand.of(session.document, patch, f"carry to {head.name}", kind=KIND, inputs=inputs)
+                )
 
         self.submit(work, then)
 
@@ -373,7 +379,9 @@ class Retargeting(QObject):
 
     def close(self) -> None:
         """Stop what is under way and end the threads."""
-        self._session.undo.indexChanged.disconnect(self._follow)  # clearing itself at its end, it would still tell us
+        self._session.document.undo.indexChanged.disconnect(
+            self._follow
+        )  # clearing itself at its end, it would still tell us
         self.cancel()
         self._whole.stop()
         self._short.stop()
@@ -390,9 +398,9 @@ class Retargeting(QObject):
     def _follow(self, *_: int) -> None:
         """Put the take on the head of the last retarget in effect: undone, redone or opened with a project."""
         session = self._session
-        if session.signalsBlocked():
-            return  # a project is being opened; it says so when it is
-        contents = session.contents()
+        if session.document.opening:
+            return  # it says so when it is open
+        contents = session.document.contents()
         kept = [edit for edit in contents.edits[: contents.position] if edit.kind == KIND]
         self._kept_heads.follow(kept[-1].inputs if kept else {})
 
@@ -412,7 +420,7 @@ class Retargeting(QObject):
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
-            if self.capture is not None and self._session.take is not self.capture.take:
+            if self.capture is not None and self._session.document.take is not self.capture.take:
                 self.capture, self._capture_path = None, None
             self.target, self.suggestions = replace(self.target, labels={}), []
             self._follow()

@@ -56,7 +56,7 @@ class ReviewActions(QObject):
 
     def review_tool(self) -> None:
         """Show what was changed."""
-        self._session.choose_tool("review")
+        self._session.view.choose_tool("review")
 
     def next_change(self) -> None:
         """Go to the next change."""
@@ -84,32 +84,32 @@ class ReviewActions(QObject):
 
     def write_report(self) -> None:
         """Choose a file and write what was changed as a page to read anywhere."""
-        suggested = beside(self._session.path, f"{Path(self._session.name).stem}_review.html")
+        suggested = beside(self._session.document.path, f"{Path(self._session.document.name).stem}_review.html")
         path, _ = ask_where(self._window, "Write a report", suggested, {"Report (*.html)": ".html"})
         if path is not None:
             self.told.emit("Writing the report…")
-            self.reporting.write(self._session.contents(), self._session.name, path)
+            self.reporting.write(self._session.document.contents(), self._session.document.name, path)
 
     def _show(self, changes: tuple[Difference, ...]) -> None:
         self.section.show_changes(changes)
-        if self._session.tool == "review":
-            self._session.set_differences(tuple((change.start, change.stop) for change in changes))
+        if self._session.view.tool == "review":
+            self._session.document.set_differences(tuple((change.start, change.stop) for change in changes))
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TOOL:
-            watched = self._session.tool == "review"
+            watched = self._session.view.tool == "review"
             self.comparing.watch(watched)
             if not watched:
-                self._session.set_differences(None)
+                self._session.document.set_differences(None)
 
     def _open_pair(self, open_then: Take, found: Pair) -> None:
         """Make the other version one step after the open take, so that undo and hold-to-compare tell the two apart."""
-        if open_then is not self._session.take:
+        if open_then is not self._session.document.take:
             return  # it was edited or closed while the other one was read
 
         def step() -> None:
-            self._session.undo.push(
-                EditCommand(self._session, found.patch, f"as in {found.name}", kind="compare", inputs={})
+            self._session.document.undo.push(
+                EditCommand.of(self._session.document, found.patch, f"as in {found.name}", kind="compare", inputs={})
             )
             self.told.emit(f"{found.name} is {found.alignment.sentence}.")
             if not found.alignment.alike:

@@ -92,7 +92,7 @@ class Comparing(QObject):
 
     def read(self, path: Path) -> None:
         """Read a take to compare the open one with; `paired` follows."""
-        self._work.submit(_Wish(self._session.take, path), "read")
+        self._work.submit(_Wish(self._session.document.take, path), "read")
 
     def close(self) -> None:
         """End the thread."""
@@ -105,15 +105,15 @@ class Comparing(QObject):
 
     def _look(self) -> None:
         session = self._session
-        steps = (session.undo.command(index) for index in range(session.undo.index()))
+        steps = (session.document.undo.command(index) for index in range(session.document.undo.index()))
         found = (getattr(step, "edit", None) for step in steps)
         edits = tuple(Edited(edit.title, edit.start, edit.stop) for edit in found if edit is not None)
-        self._work.submit(_Look(session.original, session.take, edits))
+        self._work.submit(_Look(session.document.original, session.document.take, edits))
 
     def _arrived(self, request: object, result: object) -> None:
         if isinstance(request, _Wish):
             self.paired.emit(request.take, result)
-        elif isinstance(request, _Look) and request.original is self._session.original:
+        elif isinstance(request, _Look) and request.original is self._session.document.original:
             self.changed.emit(result)
 
 

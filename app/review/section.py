@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from datetime import UTC, datetime
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QComboBox, QLineEdit, QListWidget, QListWidgetItem, QPushButton
@@ -11,6 +13,7 @@ from app.session import Change, Session
 from app.session.commands import MarkCommand
 from app.theme import GRID
 from app.widgets.section import Section, quiet
+from engine.project import Verdict
 from engine.review.changes import Change as Difference
 from engine.review.report import REGION_TITLES, clock
 from engine.words import SENTENCE_LENGTH, counted, plain
@@ -35,6 +38,7 @@ class ReviewSection(Section):
     def __init__(self, session: Session) -> None:
         super().__init__(session, "Changes")
         self._changes: tuple[Difference, ...] = ()
+        self.author: Callable[[], str] = str  # who judges
         self.summary = quiet("Comparing…")
         self.column.addWidget(self.summary)
         self.list = QListWidget()
@@ -73,7 +77,7 @@ class ReviewSection(Section):
 
     def show_changes(self, changes: tuple[Difference, ...]) -> None:
         """List these changes; the chosen line stays where it still is."""
-        fps = self.session.take.fps
+        fps = self.session.document.take.fps
         self._changes = changes
         row = self.list.currentRow()
         self.list.clear()
@@ -90,14 +94,14 @@ class ReviewSection(Section):
             self.list.setCurrentRow(row)
         differ = sum(change.stop - change.start for change in changes)
         self.summary.setText(
-            f"{counted(len(changes), 'change')} over {differ:,} of {counted(len(self.session.take), 'frame')}."
+            f"{counted(len(changes), 'change')} over {differ:,} of {counted(len(self.session.document.take), 'frame')}."
             if changes
             else "Nothing differs from the recording. Edit the take, or compare it with another one."
         )
 
     def step(self, by: int) -> None:
         """Go to the next change after the playhead, or to the one before it."""
-        here = self.session.playhead
+        here = self.session.view.playhead
         peaks = [change.peak for change in self._changes]
         later = [index for index, peak in enumerate(peaks) if peak > here]
         earlier = [index for index, peak in enumerate(peaks) if peak < here]
@@ -117,17 +121,21 @@ class ReviewSection(Section):
 
     def _go_to(self, item: QListWidgetItem) -> None:
         start, stop, peak = item.data(FRAMES)
-        self.session.select((start, stop))
-        self.session.move_playhead(peak)
+        self.session.view.select((start, stop))
+        self.session.view.move_playhead(peak)
 
     def _judge(self, *_: object) -> None:
         chosen = self.verdict.currentIndex()
         why = self.sentence.text().strip()
-        verdict = "" if chosen == 0 else f"{VERDICTS[chosen]}: {why}" if why else VERDICTS[chosen]
-        marks = self.session.marks
-        if verdict != marks.verdict:
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        verdict = Verdict(VERDICTS[chosen], why, self.author(), now) if chosen else Verdict("", "", self.author(), now)
+        marks = self.session.document.marks
+        if verdict.sentence != marks.verdict:
             title = "take back the verdict" if chosen == 0 else f"judge: {VERDICTS[chosen].lower()}"
-            self.session.undo.push(MarkCommand(self.session, replace(marks, verdict=verdict), title))
+            verdicts = (*marks.verdicts, verdict)
+            self.session.document.undo.push(
+                MarkCommand.of(self.session.document, replace(marks, verdicts=verdicts), title)
+            )
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
@@ -137,7 +145,7 @@ class ReviewSection(Section):
             self._show_verdict()
 
     def _show_verdict(self) -> None:
-        verdict = self.session.marks.verdict
+        verdict = self.session.document.marks.verdict
         title, _, why = verdict.partition(": ")
         self.verdict.setCurrentIndex(VERDICTS.index(title) if title in VERDICTS else 0)
         self.sentence.setText(why)

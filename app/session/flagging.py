@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import QObject
 
 from app.background import LatestWins
-from app.session.session import Change, Session
+from app.session.changes import Change
+from app.session.session import Session
 from engine.formats.audio import Audio
 from engine.quality import Flag, flags_after, flags_of, seen_of, sound_of
 from engine.speech.lane import VisemeLane
@@ -65,9 +66,9 @@ class Flagging(QObject):
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.READING):
             self._known, self._touched = None, []
-            self._submit((0, len(self._session.take)))
+            self._submit((0, len(self._session.document.take)))
         elif change & Change.CURVES:
-            self._submit(self._session.touched)
+            self._submit(self._session.document.touched)
         elif change & (Change.VISEMES | Change.MEDIA):  # what they tell is looked for in the whole take
             self._submit((0, 0))
 
@@ -79,25 +80,25 @@ class Flagging(QObject):
         self._work.submit(
             _Look(
                 self._number,
-                session.take,
-                session.original,
-                session.controls,
-                session.original_controls,
-                session.asked,
-                session.visemes,
-                session.audio,
-                session.offset_s("audio"),
+                session.document.take,
+                session.document.original,
+                session.document.controls,
+                session.document.original_controls,
+                session.document.asked,
+                session.document.visemes,
+                session.document.audio,
+                session.document.offset_s("audio"),
                 self._known,
                 everywhere,
             )
         )
 
     def _arrived(self, look: _Look, flags: tuple[Flag, ...]) -> None:
-        if look.original is not self._session.original:
+        if look.original is not self._session.document.original:
             return  # that take is closed
         self._known = flags
         self._touched = [entry for entry in self._touched if entry[0] > look.number]
-        self._session.set_flags(flags)
+        self._session.document.set_flags(flags)
 
 
 def _look(look: _Look) -> tuple[Flag, ...]:

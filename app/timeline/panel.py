@@ -102,13 +102,13 @@ class Timeline(QWidget):
     def _lanes(self) -> dict[str, QRectF]:
         """Return the lanes that are there, from top to bottom, each with its box right of the gutter."""
         session = self._session
-        heights = {"audio": AUDIO_PX} if session.audio is not None else {}
-        if session.visemes is not None:
+        heights = {"audio": AUDIO_PX} if session.document.audio is not None else {}
+        if session.document.visemes is not None:
             heights["visemes"] = VISEMES_PX
         heights |= {"spans": SPANS_PX, "flags": FLAGS_PX}
-        if session.differences is not None:
+        if session.document.differences is not None:
             heights["changes"] = LANE_PX
-        heights |= dict.fromkeys(lanes(session.marks), LANE_PX)
+        heights |= dict.fromkeys(lanes(session.document.marks), LANE_PX)
         boxes, top = {}, float(RULER_PX)
         for name, height in heights.items():
             boxes[name] = QRectF(self._gutter, top, self._span_px(), height)
@@ -123,26 +123,26 @@ class Timeline(QWidget):
         return next((name for name, box in self._lanes().items() if box.top() < y <= box.bottom()), "")
 
     def _viseme_place(self) -> Place:
-        first, last = self._session.view
-        fps = self._session.take.fps
+        first, last = self._session.view.range
+        fps = self._session.document.take.fps
         return self.lane_box("visemes").adjusted(0, 3, 0, -3), (first / fps, last / fps)
 
     def _near(self, lane: str, x: float) -> Note | Pin | None:
         """Return the pin or note of a lane at a place in the widget."""
         within = self.frame_at(x + NEAR_PX) - self.frame_at(x)
-        return nearest_mark(self._session.marks, lane, self.frame_at(x), within)
+        return nearest_mark(self._session.document.marks, lane, self.frame_at(x), within)
 
     def _span_px(self) -> float:
         return max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
 
     def x_of(self, frame: float) -> float:
         """Return the position of a frame in the widget."""
-        first, last = self._session.view
+        first, last = self._session.view.range
         return self._gutter + (frame - first) / max(1e-9, last - first) * self._span_px()
 
     def frame_at(self, x: float) -> float:
         """Return the fractional frame at a position in the widget."""
-        first, last = self._session.view
+        first, last = self._session.view.range
         return first + (x - self._gutter) / self._span_px() * (last - first)
 
     # --- drawing
@@ -161,13 +161,13 @@ class Timeline(QWidget):
         self._draw_ticks(painter)
         self._draw_audio(painter)
         self.visemes.draw(painter, self._colours)
-        marks, view = self._session.marks, self._session.view
-        self._spans.draw(painter, self._session.open_spans, boxes["spans"], view, self._colours)
-        self._flags.draw(painter, self._session.flags, boxes["flags"], view, self._colours)
-        draw_ranges(painter, self._session.differences or (), (self.lane_box("changes"), view), self._colours)
+        marks, view = self._session.document.marks, self._session.view.range
+        self._spans.draw(painter, self._session.document.open_spans, boxes["spans"], view, self._colours)
+        self._flags.draw(painter, self._session.document.flags, boxes["flags"], view, self._colours)
+        draw_ranges(painter, self._session.document.differences or (), (self.lane_box("changes"), view), self._colours)
         for name in lanes(marks):
             draw_marks(painter, marks, name, (boxes[name], view), self._colours)
-        x = self.x_of(self._session.playhead)
+        x = self.x_of(self._session.view.playhead)
         painter.setPen(QPen(QColor(self._colours.text), 1))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)  # as in the lanes, or the two halves part by a pixel
         painter.drawLine(QPointF(x, 2.0), QPointF(x, self.height()))
@@ -176,7 +176,7 @@ class Timeline(QWidget):
         painter.drawPolygon([QPointF(x - 5, 0), QPointF(x + 5, 0), QPointF(x, 7)])
 
     def _draw_selection(self, painter: QPainter) -> None:
-        chosen = self._session.selection
+        chosen = self._session.view.selection
         if chosen is None:
             return
         left, right = self.x_of(chosen[0] - 0.5), self.x_of(chosen[1] - 0.5)
@@ -186,8 +186,8 @@ class Timeline(QWidget):
 
     def _draw_ticks(self, painter: QPainter) -> None:
         session = self._session
-        fps = session.take.fps
-        first, last = session.view
+        fps = session.document.take.fps
+        first, last = session.view.range
         per_second = self._span_px() / max(1e-9, (last - first) / fps)
         steps_s = [frames / fps for frames in STEPS_FRAMES] if self.in_frames else STEPS_S
         step = next((s for s in steps_s if s * per_second >= LABEL_PX), steps_s[-1])
@@ -207,10 +207,12 @@ class Timeline(QWidget):
 
     def _draw_audio(self, painter: QPainter) -> None:
         session = self._session
-        if session.audio is not None:
-            first_s, last_s = (frame / session.take.fps - session.offset_s("audio") for frame in session.view)
+        if session.document.audio is not None:
+            first_s, last_s = (
+                frame / session.document.take.fps - session.document.offset_s("audio") for frame in session.view.range
+            )
             box = QRectF(self._gutter, RULER_PX + 2, self._span_px(), AUDIO_PX - 4)
-            draw_waveform(painter, session.audio, box, (first_s, last_s), self._colours.quiet)
+            draw_waveform(painter, session.document.audio, box, (first_s, last_s), self._colours.quiet)
 
     # --- the mouse
 
@@ -220,21 +222,23 @@ class Timeline(QWidget):
             return
         x, lane = event.position().x(), self._lane_at(event.position().y())
         frame = round(self.frame_at(x))
-        if lane == "spans" and (hit := [span for span in self._session.marks.spans if span.start <= frame < span.stop]):
-            self._session.select((hit[0].start, hit[0].stop))
-            self._session.move_playhead(hit[0].start)
+        if lane == "spans" and (
+            hit := [span for span in self._session.document.marks.spans if span.start <= frame < span.stop]
+        ):
+            self._session.view.select((hit[0].start, hit[0].stop))
+            self._session.view.move_playhead(hit[0].start)
         elif lane == "flags" and (mark := self._flags.at(x)) is not None:
-            self._session.move_playhead(mark.flag.start)
+            self._session.view.move_playhead(mark.flag.start)
             self.told.emit(mark.sentence)
         elif (near := self._near(lane, x)) is not None:
-            self._session.move_playhead(near.frame)
+            self._session.view.move_playhead(near.frame)
         elif lane == "spans" or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             self._selecting, self._marking = frame, lane == "spans"
         elif lane == "audio":
-            self._sliding = event.position().x(), self._session.offset_s("audio")
+            self._sliding = event.position().x(), self._session.document.offset_s("audio")
         elif lane != "visemes" or not self.visemes.take(x):
             self._scrubbing = True
-            self._session.move_playhead(frame)
+            self._session.view.move_playhead(frame)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Go on with what the press began; show by the pointer what a press would take hold of."""
@@ -243,9 +247,9 @@ class Timeline(QWidget):
             self.visemes.move(event.position().x())
         elif self._selecting is not None:
             first, last = sorted((self._selecting, frame))
-            self._session.select((first, last + 1))
+            self._session.view.select((first, last + 1))
         elif self._scrubbing:
-            self._session.move_playhead(frame)
+            self._session.view.move_playhead(frame)
         elif self._sliding is not None:
             self._slide(event.position().x())
         else:
@@ -255,8 +259,10 @@ class Timeline(QWidget):
         """Take the sound along with the mouse; back where it began it is left as it was."""
         assert self._sliding is not None
         began, offset_s = self._sliding
-        if self._session.sliding is not None or abs(x - began) > SLACK_PX:
-            self._session.slide("audio", offset_s + (self.frame_at(x) - self.frame_at(began)) / self._session.take.fps)
+        if self._session.document.sliding is not None or abs(x - began) > SLACK_PX:
+            self._session.document.slide(
+                "audio", offset_s + (self.frame_at(x) - self.frame_at(began)) / self._session.document.take.fps
+            )
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End the selection, or make it a span; a mere click clears it."""
@@ -265,15 +271,15 @@ class Timeline(QWidget):
         frame, selecting = round(self.frame_at(event.position().x())), self._selecting
         self._selecting, self._scrubbing = None, False
         held, self._sliding = self._sliding, None
-        if held is not None and self._session.sliding is None:
-            self._session.move_playhead(frame)
+        if held is not None and self._session.document.sliding is None:
+            self._session.view.move_playhead(frame)
         elif held is not None:
             self.slid.emit()
         if selecting is None:
             return
         if frame == selecting:
-            self._session.select(None)
-            self._session.move_playhead(frame)
+            self._session.view.select(None)
+            self._session.view.move_playhead(frame)
         elif self._marking:
             self.marked.emit()
 
@@ -290,18 +296,18 @@ class Timeline(QWidget):
             self.visemes.open_menu(x, event.globalPos(), self._colours)
             return
         frame = round(self.frame_at(x))
-        span = next((each for each in self._session.marks.spans if each.start <= frame < each.stop), None)
+        span = next((each for each in self._session.document.marks.spans if each.start <= frame < each.stop), None)
         mark = self._flags.at(x) if lane == "flags" else None
         near = self._near(lane, x)
         kind, told = ("audio", "") if lane == "audio" else ("time", "")
         if lane == "spans" and span is not None:
-            self._session.select((span.start, span.stop))
+            self._session.view.select((span.start, span.stop))
             kind, frame = "span", span.start
         elif mark is not None:
             kind, frame, told = "flag", mark.flag.start, mark.flag.sentence
         elif near is not None:
             kind, frame, told = lane.removesuffix("s"), near.frame, near.text if isinstance(near, Note) else ""
-        self._session.move_playhead(frame)
+        self._session.view.move_playhead(frame)
         self.menu_wanted.emit(kind, event.globalPos(), told)
 
     def told_at(self, place: QPointF) -> str:
@@ -333,11 +339,11 @@ class Timeline(QWidget):
         turn = event.angleDelta()
         notches = (turn.y() or turn.x()) / 120.0
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(turn.x()) > abs(turn.y()):
-            first, last = self._session.view
+            first, last = self._session.view.range
             shift = -notches * 0.1 * (last - first)
-            self._session.set_view(first + shift, last + shift)
+            self._session.view.set_range(first + shift, last + shift)
         else:
-            self._session.zoom_view(1.2**notches, self.frame_at(event.position().x()))
+            self._session.view.zoom(1.2**notches, self.frame_at(event.position().x()))
 
 
 class TimeScroll(QScrollBar):
@@ -352,13 +358,13 @@ class TimeScroll(QScrollBar):
 
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.VIEW):
-            first, last = self._session.view
+            first, last = self._session.view.range
             with QSignalBlocker(self):
-                self.setRange(0, max(0, len(self._session.take) - 1 - int(last - first)))
+                self.setRange(0, max(0, len(self._session.document.take) - 1 - int(last - first)))
                 self.setPageStep(max(1, int(last - first)))
                 self.setSingleStep(max(1, int((last - first) / 20)))
                 self.setValue(int(first))
 
     def _scrolled(self, value: int) -> None:
-        first, last = self._session.view
-        self._session.set_view(value, value + last - first)
+        first, last = self._session.view.range
+        self._session.view.set_range(value, value + last - first)

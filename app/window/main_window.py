@@ -67,7 +67,7 @@ from app.window.notices import Notices
 from app.window.screen import DESIGNED, stay_on_screen
 from app.window.status import StatusBar
 from engine.assets import DEMO_TAKE
-from engine.formats.importing import imported
+from engine.formats.livelink.importing import imported
 from engine.take import Take
 
 
@@ -220,7 +220,7 @@ class MainWindow(QMainWindow):
         self.preview.timed.connect(self.status.timed)
         self._connect_media()
         self._connect_retarget()
-        self.notes.author = lambda: self.settings.author
+        self.notes.author = self.review.section.author = lambda: self.settings.author
         self.preferences.themed.connect(self._wear)
         for clock in (self.timeline, self.status):
             self.preferences.counted.connect(clock.count_in_frames)
@@ -256,7 +256,7 @@ class MainWindow(QMainWindow):
         self.timeline.marked.connect(self.spans.mark)
         self.spans.strip.wanted.connect(self.preview.draw_strip)
         self.preview.strip_drawn.connect(self.spans.strip.show_picture)
-        self.session.undo.indexChanged.connect(self._show_undo)
+        self.session.document.undo.indexChanged.connect(self._show_undo)
         self._show_undo()
         self._show_missing()
         self._show_filling()
@@ -321,10 +321,10 @@ class MainWindow(QMainWindow):
         self.notices.hide()
         self._show_title()
         self.status.show_take()
-        from_file = self.keeper.path is None and self.session.path not in (None, DEMO_TAKE)
+        from_file = self.keeper.path is None and self.session.document.path not in (None, DEMO_TAKE)
         self.importing.tell(self.files.imported, shown=from_file)
         there = from_file and self.importing.there  # it has what was noticed
-        self.status.tell("" if there else " ".join(self.session.take.notices))
+        self.status.tell("" if there else " ".join(self.session.document.take.notices))
         self._show_importing()
 
     def show_import(self) -> None:
@@ -372,7 +372,7 @@ class MainWindow(QMainWindow):
         self._plain_text.let_go()
         self._focus.let_go()
         self.transport.run(0.0)
-        self.session.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
+        self.session.document.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.files.opening.close()
         self.keeper.close()
         self.inference.close()
@@ -404,9 +404,9 @@ class MainWindow(QMainWindow):
 
     def _show_tool(self) -> None:
         for name in TOOLS:
-            self.actions_by_name[f"{name}_tool"].setChecked(self.session.tool == name)
-        self.actions_by_name["hit_exactly"].setChecked(not self.session.believability)
-        self.actions_by_name["show_removed"].setChecked(self.session.shows_removed)
+            self.actions_by_name[f"{name}_tool"].setChecked(self.session.view.tool == name)
+        self.actions_by_name["hit_exactly"].setChecked(not self.session.view.believability)
+        self.actions_by_name["show_removed"].setChecked(self.session.view.shows_removed)
 
     def _wear(self, colours: theme.Palette) -> None:
         self.colours = colours
@@ -419,28 +419,30 @@ class MainWindow(QMainWindow):
 
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.CURVES | Change.SAVED):
-            self.setWindowModified(self.session.edited)
+            self.setWindowModified(self.session.document.edited)
         if change & (Change.TAKE | Change.MARKS | Change.MEDIA):
             for kind in MEDIA:
-                self.actions_by_name[f"detach_{kind}"].setEnabled(self.session.marks.medium(kind) is not None)
+                self.actions_by_name[f"detach_{kind}"].setEnabled(self.session.document.marks.medium(kind) is not None)
         if change & (Change.TAKE | Change.VISEMES):
             for name in ("shift_visemes", "restore_visemes", "remove_visemes"):
-                self.actions_by_name[name].setEnabled(self.session.visemes is not None)
+                self.actions_by_name[name].setEnabled(self.session.document.visemes is not None)
         if change & (Change.TAKE | Change.MARKS | Change.SAVED | Change.CURVES):
             self._show_hints()
         if change & Change.TOOL:
             self._show_tool()
 
     def _show_title(self, *_: object) -> None:
-        self.setWindowTitle(f"{title(self.session.name)}[*] - Retake")
-        self.setWindowModified(self.session.edited)
+        self.setWindowTitle(f"{title(self.session.document.name)}[*] - Retake")
+        self.setWindowModified(self.session.document.edited)
 
     def _show_hints(self) -> None:
-        session, stack = self.session, self.session.undo
-        self.menus.show_hints(changed=stack.count() > 0, saved=not session.edited, hatched=bool(session.open_spans))
+        session, stack = self.session, self.session.document.undo
+        self.menus.show_hints(
+            changed=stack.count() > 0, saved=not session.document.edited, hatched=bool(session.document.open_spans)
+        )
 
     def _show_undo(self, *_: int) -> None:
-        stack = self.session.undo
+        stack = self.session.document.undo
         self._show_hints()
         for name, able, text in (
             ("undo", stack.canUndo(), stack.undoText()),

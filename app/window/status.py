@@ -84,8 +84,8 @@ class StatusBar(QFrame):
 
     def show_take(self, *_: object) -> None:
         """Tell what is open."""
-        take = self._session.take
-        self["take"].setText(self._session.name)
+        take = self._session.document.take
+        self["take"].setText(self._session.document.name)
         self["rate"].setText(f"{take.fps:g} fps")
         self["length"].setText(f"{counted(len(take), 'frame')} · {timecode(take.duration_s, take.fps)}")
         self.show_place()
@@ -93,7 +93,7 @@ class StatusBar(QFrame):
 
     def show_place(self) -> None:
         """Tell where the playhead is."""
-        frame, fps = self._session.playhead, self._session.take.fps
+        frame, fps = self._session.view.playhead, self._session.document.take.fps
         self["place"].setText(f"frame {frame:,}" if self.in_frames else f"{timecode(frame / fps, fps)} · {frame}")
 
     def count_in_frames(self, on: bool) -> None:
@@ -113,15 +113,15 @@ class StatusBar(QFrame):
             self.show_place()
         if change & (Change.TAKE | Change.CURVES | Change.SAVED):
             self._show_saved()
-        if change & Change.MEDIA and self._session.audio is not self._sound:
-            self._sound = self._session.audio
+        if change & Change.MEDIA and self._session.document.audio is not self._sound:
+            self._sound = self._session.document.audio
             if beyond := beyond_the_take(self._session):
                 self.tell(beyond)
 
     def _show_saved(self) -> None:
         saving, opening = self._keeper.saving, self._opening.path
         saved = "saved" if self._keeper.path else ""
-        told = "edits not saved yet" if self._session.edited else saved
+        told = "edits not saved yet" if self._session.document.edited else saved
         under_way = [f"saving {plain(saving.name, longest=LONGEST)}…"] if saving else []
         under_way += [f"opening {plain(opening.name, longest=LONGEST)}…"] if opening else []
         self["saved"].setText(" ".join(under_way) or told)
@@ -135,7 +135,7 @@ class StatusBar(QFrame):
         self._show_saved()
 
     def _show_sound(self) -> None:
-        attached = self._session.audio is not None
+        attached = self._session.document.audio is not None
         self["sound"].setText((f"♪ {self._media.device}" if self._media.device else "♪ silent") if attached else "")
         self["sound"].setToolTip(
             "The loudspeaker that plays" if self._media.device else "No loudspeaker was found; time runs by the clock."

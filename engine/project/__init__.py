@@ -1,6 +1,6 @@
 """The `.retake` file: a performance, all that was done to it, and what people noted beside it, in one SQLite database."""
 
-from engine.formats.lock import InUseError
+from engine.formats.base.lock import InUseError
 from engine.project.claim import DisplacedError
 from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (
@@ -11,7 +11,6 @@ from engine.project.records import (
     Edit,
     Marks,
     Media,
-    Note,
     Pin,
     Span,
     Summary,
@@ -21,6 +20,7 @@ from engine.project.records import (
     reading_edit,
 )
 from engine.project.replaying import Before, Replayed, replay
+from engine.project.reviewing import Drawing, Note, Reply, Verdict
 from engine.project.store import ENDING, Project, create, delete, peek, recover
 from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
@@ -32,6 +32,7 @@ __all__ = [
     "Before",
     "Contents",
     "DisplacedError",
+    "Drawing",
     "Edit",
     "Found",
     "InUseError",
@@ -41,8 +42,10 @@ __all__ = [
     "Pin",
     "Project",
     "Replayed",
+    "Reply",
     "Span",
     "Summary",
+    "Verdict",
     "VisemeChange",
     "attach",
     "change_between",

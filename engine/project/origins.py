@@ -6,8 +6,8 @@ import sqlite3
 
 import numpy as np
 
-from engine.formats.livelink_header import columns_of
-from engine.formats.livelink_origin import Origin, header_of, row_starts
+from engine.formats.livelink.columns import columns_of
+from engine.formats.livelink.origin import Origin, header_of, row_starts
 from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
 from engine.project.tables import insert
 from engine.take import Take

@@ -9,8 +9,8 @@ import numpy as np
 
 from engine.controls import ALL_CONTROLS
 from engine.formats import livelink
-from engine.formats.livelink_sides import exchange
-from engine.formats.reading import ReadAs
+from engine.formats.base.reading import ReadAs
+from engine.formats.livelink.sides import exchange
 from engine.project.records import READING, VISEMES, Contents, Edit, read_as_of
 from engine.project.visemes import VisemeChange, change_of
 from engine.speech.lane import VisemeLane

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from engine.errors import EditError
 from engine.formats import FORMATS, audio, read_take
-from engine.formats.reading import Reading
+from engine.formats.base.reading import Reading
 from engine.project import ENDING, Project, replay
 from engine.quality import Flag, Seen, flags_of, seen_of, sound_of
 from engine.review.changes import Edited, compare

@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.character import Character
 from engine.errors import EditError
-from engine.formats.capture import Markers
+from engine.formats.markers.capture import Markers
 from engine.spacetime.align import HeadMotion, check_points, stillest
 from engine.spacetime.closure import GAPS, Gaps
 from engine.spacetime.denoise import denoise

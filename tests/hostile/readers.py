@@ -55,8 +55,8 @@ def _read_take(path: Path) -> None:
 
 def _markers(*endings: str) -> Callable[[Path], Iterator[tuple[str, bytes]]]:
     def samples(folder: Path) -> Iterator[tuple[str, bytes]]:
-        from engine.formats.capture import Markers
         from engine.formats.markers import write
+        from engine.formats.markers.capture import Markers
 
         positions = np.round(100 * np.random.default_rng(0).normal(size=(6, 4, 3)), 3)
         positions[2, 1] = np.nan
@@ -132,11 +132,11 @@ def _projects(folder: Path) -> Iterator[tuple[str, bytes]]:
     made = sample(Take(np.random.default_rng(3).random((40, len(SHAPES))), 30.0, name="random"))
     from dataclasses import replace
 
-    from engine.project import change_between, mark_edit, viseme_edit
+    from engine.project import Verdict, change_between, mark_edit, viseme_edit
 
     lane = attached([Cue(0, 0.5, "M"), Cue(0.5, 0.9, "AA1")], "a")
     steps = (
-        mark_edit("mark", made.marks, replace(made.marks, verdict="x")),
+        mark_edit("mark", made.marks, replace(made.marks, verdicts=(Verdict("x"),))),
         viseme_edit("v", change_between(None, lane)),
     )
     yield "a.retake", stored(replace(made, edits=(*made.edits, *steps)), folder)
@@ -283,7 +283,7 @@ def _layouts(folder: Path) -> Iterator[tuple[str, bytes]]:
 
 def _read_layout(path: Path) -> None:
     from engine.character import bundled
-    from engine.formats import markers_layout
+    from engine.formats.markers import layout as markers_layout
 
     markers_layout.read(path, head=bundled())
 

@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 from engine.errors import FormatError
+from engine.formats.base.content import require_file
 from engine.formats.characters.raw import RawCharacter
-from engine.formats.content import require_file
 
 KNOWN = "Retake imports glTF, GLB and VRM, folders of OBJ files, and ICT-FaceKit."
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from engine.character import Character, bundled
 from engine.errors import EditError, FormatError
-from engine.formats.budget import BUDGET
+from engine.formats.base.budget import BUDGET
 from engine.formats.characters.colouring import MOST_PARTS, colours_of
 from engine.formats.characters.frame import TYPICAL_MM, UNITS_MM, Detection, Frame, detect
 from engine.formats.characters.landmarks import transfer_landmarks

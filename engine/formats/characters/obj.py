@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
-from engine.formats.budget import BUDGET
+from engine.formats.base.budget import BUDGET
+from engine.formats.base.content import content_of, unread
 from engine.formats.characters.names import match_names, plain
 from engine.formats.characters.raw import FARTHEST, MAX_SHAPES, MAX_VERTICES, RawCharacter, check
-from engine.formats.content import content_of, unread
 from engine.take import Array
 from engine.words import counted
 

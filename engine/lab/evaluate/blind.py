@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from engine.errors import FormatError
-from engine.formats.textfile import read_text
+from engine.formats.base.textfile import read_text
 from engine.inpaint.infer import bundled
 from engine.lab.corpus import Piece
 from engine.lab.evaluate.inpaint import GUIDANCE, Hole, guided, holes

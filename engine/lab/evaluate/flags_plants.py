@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.anatomy import pairs
 from engine.controls import CONTROL_INDEX, measure
-from engine.formats.livelink_sides import exchange, judge
+from engine.formats.livelink.sides import exchange, judge
 from engine.quality import TUNING, Seen
 from engine.quality.seen import LIDS, drops
 from engine.quality.shape import crossed_mm

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from engine.character import Character, bundled
 from engine.errors import EditError
 from engine.formats import read_take
-from engine.formats.capture import Markers
+from engine.formats.markers.capture import Markers
 from engine.lab.performer import demo
 from engine.spacetime.align import HeadMotion
 from engine.spacetime.closure import Gaps
