@@ -116,6 +116,7 @@ def _joined(points: Array, solids: Sequence[Solid], body: Array | None = None) -
 
 def distance_to(
     points: Array,
+    *,
     head: Sequence[Solid],
     neck: Sequence[Solid],
     sockets: Sequence[Solid],
@@ -133,7 +134,7 @@ def distance_to(
 
 def distance(points: Array) -> Array:
     """Return the signed distance of points, (n, 3), to the clay: about right near it, exact in sign."""
-    return distance_to(points, HEAD, NECK, SOCKETS, NOSE, PHILTRUM)
+    return distance_to(points, head=HEAD, neck=NECK, sockets=SOCKETS, nose=NOSE, philtrum=PHILTRUM)
 
 
 def gradient(points: Array, step: float = 1e-3) -> Array:

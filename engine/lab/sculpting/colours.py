@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.lab.sculpting import hairline, lips
 from engine.lab.modelling.solids import bell
+from engine.lab.sculpting import hairline, lips
 from engine.lab.sculpting.topology import Topology
 from engine.take import Array
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.lab.sculpting.clay import EYE_CENTRE, EYE_RADIUS
 from engine.lab.modelling.solids import mix, turn_y, turn_z
+from engine.lab.sculpting.clay import EYE_CENTRE, EYE_RADIUS
 from engine.take import Array
 
 POINTS = 36  # of a ring: 0 at the medial corner, over the upper lid to 18 at the lateral one, back below

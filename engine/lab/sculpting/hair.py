@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.lab.modelling.solids import mix, smooth_step
 from engine.lab.sculpting import clay, colours, eyelids
 from engine.lab.sculpting.hairline import CAP_CENTRE, HAIRLINE
 from engine.lab.sculpting.parts import Part, fan, sheet, sheet_mirror
-from engine.lab.modelling.solids import mix, smooth_step
 from engine.take import Array
 
 LASH_COLUMNS = 45

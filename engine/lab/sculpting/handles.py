@@ -35,7 +35,8 @@ FACE: dict[str, tuple[float, float]] = {
     "cheek, in": (2.8, -3.0), "cheek": (4.2, -3.0), "cheekbone": (5.7, -2.6), "cheek, low": (3.9, -4.8), "cheek, out": (5.4, -5.2),
     "jowl": (4.9, -7.4), "jaw": (4.2, -9.3), "jaw, front": (2.7, -10.9), "chin fold": (0, -9.0), "beside the chin": (1.5, -9.4),
     "chin": (0, -10.5), "under the chin": (0, -11.75),
-    "brow, in": (1.35, 1.75), "brow": (2.9, 2.15), "brow, out": (4.5, 1.85), "brow, tail": (5.7, 0.9), "between the brows": (0, 1.7),
+    "brow, in": (1.35, 1.75), "brow": (2.9, 2.15), "brow, out": (4.5, 1.85), "brow, tail": (5.7, 0.9),
+    "between the brows": (0, 1.7),
     "above the brow, in": (1.4, 3.4), "above the brow": (3.2, 3.6), "above the brow, out": (5.2, 3.2), "forehead": (0, 5.0),
     "forehead, out": (3.2, 5.6), "eye corner, out": (5.6, -0.3), "temple": (6.9, 1.0), "nose root": (1.2, 0.6),
 }  # fmt: skip

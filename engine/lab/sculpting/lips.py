@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.lab.sculpting import clay
 from engine.lab.modelling.solids import mix
+from engine.lab.sculpting import clay
 from engine.take import Array
 
 POINTS = 48  # of a ring: 0 at the right corner, over the upper lip to 24 at the left one, back below

@@ -70,7 +70,7 @@ class MeasuredHead:
         Eyes, lips, nostrils and ears are left out: they have sculptures of their own.
         """
         candidates = self.points[:SKIN]
-        x, y, z = candidates.T
+        x, y, _ = candidates.T
         keep = (x > -0.02) & (y > -19) & ~_featured(candidates) & ~((y < -12.5) & ((np.abs(x) > 6) | (y < -18)))
         candidates = candidates[keep]
         chosen: list[Array] = []
@@ -88,7 +88,7 @@ class MeasuredHead:
     def _match(self, name: str, place: Array) -> int:
         points, falls, outer = self.points, self.falls, np.arange(len(self.points)) < FACE
         wider = 2.52 / HALF_WIDTH  # its mouth to ours
-        if name == "lip 8 24" or name == "lip 4 24":
+        if name in {"lip 8 24", "lip 4 24"}:
             return self._nearest(np.array([2.50, -7.28, 10.1]), outer)
         if name.startswith("lip 8"):
             upper = int(name.split()[2]) < 24

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from engine.lab.modelling.solids import smooth_step
 from engine.lab.sculpting import colours
 from engine.lab.sculpting.clay import EYE_CENTRE, EYE_RADIUS
 from engine.lab.sculpting.lips import outward
-from engine.lab.modelling.solids import smooth_step
 from engine.take import Array
 
 # Where the upper teeth begin and end about the arch's middle: two broad incisors, a narrow one, a canine, two molars.
@@ -128,7 +128,7 @@ def tongue() -> Part:
     rows, columns = 11, 20
     along = np.linspace(0, 1, rows)[:, None]
     turn = 2 * np.pi * np.arange(columns) / columns
-    width = 1.75 * np.sqrt(np.maximum(1e-4, 1 - np.maximum(0, (along - 0.55) / 0.45) ** 2.2))
+    width = 1.55 * np.sqrt(np.maximum(1e-4, 1 - np.maximum(0, (along - 0.55) / 0.45) ** 2.2))
     height = 0.62 * (1 - 0.45 * along)
     width[-1], height[-1] = 0.05, 0.02
     x, y = width * np.sin(turn), height * np.cos(turn)
@@ -138,7 +138,8 @@ def tongue() -> Part:
     tip, last = len(tube), (rows - 1) * columns + np.arange(columns)
     triangles = np.concatenate([sheet(rows, columns, closed=True), fan(last, tip)[:, [1, 0, 2]]])
     mirror = np.append(sheet_mirror(rows, columns, closed=True), tip)
-    return Part("tongue", points, triangles, np.tile(colours.TONGUE, (len(points), 1)), mirror)
+    paint = np.array(colours.TONGUE) * np.append(np.repeat(0.5 + 0.5 * along[:, 0] ** 0.7, columns), 1.0)[:, None]
+    return Part("tongue", points, triangles, paint, mirror)
 
 
 def ear() -> Part:

@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
+from engine.lab.modelling.solids import smooth_step
 from engine.lab.sculpting import clay, hair, lips, parts
 from engine.lab.sculpting.colours import skin_colours
 from engine.lab.sculpting.parts import Part
 from engine.lab.sculpting.skin import shape_skin
-from engine.lab.modelling.solids import smooth_step
 from engine.lab.sculpting.topology import Topology
 from engine.take import Array, Mask
 

@@ -7,16 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from engine.lab.modelling.solids import smooth_step, turn_x, turn_y
 from engine.lab.sculpting import eyelids, hair, handles
 from engine.lab.sculpting.clay import EYE_CENTRE
 from engine.lab.sculpting.handles import Handles
 from engine.lab.sculpting.motions import Motion, fitted
 from engine.lab.sculpting.sculpture import Sculpture
-from engine.lab.modelling.solids import smooth_step, turn_x, turn_y
 from engine.take import SHAPES, Array
 
 HINGE = np.array([0.0, -1.6, 0.9])
-JAW_SHARE = 0.86  # of the measured opening, which is the widest a jaw goes
 TONGUE_SHARE = 0.92  # of the jaw's motion that the tongue takes part in
 GAZE = {"eyeLookUp": turn_x(-24), "eyeLookDown": turn_x(24), "eyeLookIn": turn_y(-28), "eyeLookOut": turn_y(28)}
 NEIGHBOURS = 4  # vertices of the skin that a brow hair follows
@@ -39,35 +38,35 @@ class Modeller:
             return self._mouth_close()
         motion = self.motions[name]
         moved = self.head.still()
-        moved[: len(self.head.skin)] = self.handles.motion(motion.moves * _share(name))
+        moved[: len(self.head.skin)] = self.handles.motion(motion.moves)
         if name.startswith("jaw"):
-            self._open_inside(moved, motion, _share(name))
+            self._open_inside(moved, motion)
         closed = 1.0 if name.startswith("eyeBlink") else 0.0
         raised = (0.0, 0.0) if closed else motion.lids
         moved += move_lids(self.head, closed, *raised) if not name.startswith("jaw") else 0.0
         gaze = GAZE.get(name.removesuffix("Left"))
         if gaze is not None:
             moved += _turned_eye(self.head, gaze)
-        return self._with_parts(moved, motion, _share(name))
+        return self._with_parts(moved, motion)
 
-    def _open_inside(self, moved: Array, motion: Motion, share: float) -> None:
+    def _open_inside(self, moved: Array, motion: Motion) -> None:
         """Let the inside of the mouth follow the jaw as a rigid body, the more the deeper it lies."""
         head, points = self.head, self.head.skin
-        rigid = (points - HINGE) @ turn_x(share * motion.jaw).T + HINGE + share * motion.jaw_shift - points
+        rigid = (points - HINGE) @ turn_x(motion.jaw).T + HINGE + motion.jaw_shift - points
         deep = np.clip((head.ring - 9) / 3.0, 0.0, 1.0)[:, None]
         inside = rigid * head.jaw[:, None]
         moved[: len(points)] = moved[: len(points)] * (1 - deep) + inside * deep
 
-    def _with_parts(self, moved: Array, motion: Motion, share: float) -> Array:
+    def _with_parts(self, moved: Array, motion: Motion) -> Array:
         """Add what is no skin: brows follow the skin under them, lower teeth and tongue the jaw."""
         head = self.head
         for part in ("brow_left", "brow_right"):
             moved[head.at[part]] = followed(head, moved, head.points[head.at[part]])
         if motion.jaw or motion.jaw_shift.any():
-            turn = turn_x(share * motion.jaw)
+            turn = turn_x(motion.jaw)
             for part, taking in (("teeth_lower", 1.0), ("tongue", TONGUE_SHARE)):
                 points = head.points[head.at[part]]
-                moved[head.at[part]] = taking * ((points - HINGE) @ turn.T + HINGE + share * motion.jaw_shift - points)
+                moved[head.at[part]] = taking * ((points - HINGE) @ turn.T + HINGE + motion.jaw_shift - points)
         return moved
 
     def _mouth_close(self) -> Array:
@@ -85,7 +84,7 @@ class Modeller:
                 travel = (moves[upper] + jaw[upper] + moves[lower] + jaw[lower]) / 2
                 moves[upper], moves[lower] = travel - jaw[upper], travel - jaw[lower]
         moved = self.head.still()
-        moved[: len(self.head.skin)] = self.handles.motion(moves * JAW_SHARE)
+        moved[: len(self.head.skin)] = self.handles.motion(moves)
         return moved
 
 
@@ -105,10 +104,6 @@ def shapes(head: Sculpture) -> dict[str, Array]:
         else:
             moved[name] = head.symmetric(motion)
     return moved
-
-
-def _share(name: str) -> float:
-    return JAW_SHARE if name == "jawOpen" else 1.0
 
 
 def followed(head: Sculpture, moved: Array, points: Array) -> Array:
@@ -146,5 +141,5 @@ def tongue_out(head: Sculpture) -> Array:
     """Put the tongue out between the lips, its tip lowest."""
     motion, part = head.still(), head.at["tongue"]
     eased = smooth_step(5.7, 9.8, head.points[part][:, 2])[:, None]
-    motion[part] = eased * [0, 0.30, 4.2] + eased**2 * [0, -0.75, 0]
+    motion[part] = eased * [0, 1.0, 3.9] + eased**3 * [0, -1.15, 0]
     return motion

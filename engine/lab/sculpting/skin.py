@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import sparse
 
-from engine.lab.sculpting import clay, eyelids, lips
 from engine.lab.modelling.solids import mix
+from engine.lab.sculpting import clay, eyelids, lips
 from engine.lab.sculpting.topology import Topology, skin_topology
 from engine.take import Array, Mask
 

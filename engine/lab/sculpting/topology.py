@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from engine.lab.sculpting import clay
 from engine.lab.modelling.solids import mix, smooth_step
+from engine.lab.sculpting import clay
 from engine.take import Array
 
 Loop = list[int]
