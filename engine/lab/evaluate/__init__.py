@@ -22,7 +22,7 @@ TABLES: dict[str, str] = {
     "bezier": "Points that a hand edit would need, and our time (BSS20 table 3)",
     "regress_edits": "Requests that no face fits: how like a recording the result is (BSBS19 section 5.3)",
     "edits": "Edits that a person would make: asked and reached, what else moved, likeness, time",
-    "regress_takes": "The regressor on each recorded take, trained on all others",
+    "regress_people": "The regressor and its baselines on each person, trained on all others",
     "regress_levers": "What each augmentation and loss term does for the regressor",
     "flags": "Three hundred faults planted into recordings: recall and precision of each kind of flag, false flags",
     "spacetime": "Performances carried to a second head and back (SLS12 figures 9, 11)",
