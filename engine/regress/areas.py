@@ -63,11 +63,11 @@ _BROWS = ("brow_right", "brow_left", "brow_inner")
 _ASIDE = ("jaw_sideways", "corner_height_right", "corner_height_left")
 AREAS: tuple[Area, ...] = (
     Area("lower", _MOUTH, ("jaw", "mouth", "cheekPuff", "tongue"), False, _ASIDE, (*_MOUTH, *_ASIDE)),
-    Area("upper", (*_LIDS, *_MOUTH[2:5]), _UPPER, True, (*_BROWS, "gaze_vertical"), _BROWS),
+    Area("upper", (*_LIDS, *_MOUTH[2:5]), _UPPER, True, ("gaze_vertical",)),
     Area("eyelids", _LIDS, ("eyeBlink", "eyeSquint", "eyeWide"), True, ("gaze_vertical",), _LIDS),
 )
 
-# Of one part alone, for edits in which nothing else may move.
+# Of one part alone: for edits in which nothing else may move, and in the place of what the areas above say of brows.
 EXTENDED_AREAS: tuple[Area, ...] = (
     Area("brows", _BROWS, ("brow",), True, held=_BROWS),
     Area("jaw", (*_MOUTH, "jaw_sideways"), ("jawRight", "jawLeft", "mouthRight", "mouthLeft"), True),

@@ -18,7 +18,9 @@ from engine.regress.areas import AREAS, EXTENDED_AREAS, Area
 from engine.regress.network import ALIGNMENT, REACH, AreaNetwork, from_config
 from engine.take import SHAPES, Array
 
-_GAZE = [ALL_INDEX["gaze_horizontal"], ALL_INDEX["gaze_vertical"]]
+_LOWER, _UPPER, _EYELIDS = AREAS
+_BROWS, _, _GAZE = EXTENDED_AREAS
+_ORDER = [_GAZE, _UPPER, _BROWS, _EYELIDS, _LOWER]
 
 
 class Regressor:
@@ -33,6 +35,8 @@ class Regressor:
         self.networks = networks
         for network in networks.values():
             network.eval()
+            if network.constraint is not None:
+                network.constraint.double()  # what a solve makes of rounding shows, and is not alike in a take and a part
 
     def infer(
         self,
@@ -110,8 +114,9 @@ class Regressor:
 
     def _areas(self, controls: Array) -> list[Area]:
         """Return the areas in the order in which each is brought onto its controls: the upper lip hangs on the nose."""
-        gaze = [area for area in EXTENDED_AREAS if area.name == "gaze" and not np.isnan(controls[:, _GAZE]).any()]
-        return [area for area in (*gaze, *AREAS[::-1]) if area.name in self.networks]
+        known = [area for area in (_GAZE, _BROWS) if not np.isnan(controls[:, area.control_columns]).any()]
+        order = sorted((*AREAS, *known), key=_ORDER.index)
+        return [area for area in order if area.name in self.networks]
 
 
 def _known(controls: Array, kept: Array | None) -> Array:

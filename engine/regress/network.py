@@ -11,6 +11,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import avg_pool1d, conv1d, elu, max_pool1d, pad
 
+from engine.regress.areas import Area
 from engine.regress.constraint import Constraint
 
 LOOK = 24  # frames on either side that are scaled with an excess, and over which the scale comes and goes
@@ -244,8 +245,10 @@ class AreaNetwork(nn.Module):
         asked = self._bounded(controls, original) if full else controls
         missing = self.low.shape[1] - controls.shape[1]
         asked = pad(asked, (0, 0, 0, missing), value=torch.nan)[:, list(self._held.values())]
-        made: Tensor = self.constraint(weights, asked, still, doubting=full)
-        return made
+        exact = self.constraint.covariance.dtype
+        still = None if still is None else still.to(exact)
+        made: Tensor = self.constraint(weights.to(exact), asked.to(exact), still, doubting=full)
+        return made.to(weights.dtype)
 
     def _bounded(self, controls: Tensor, original: Tensor | None) -> Tensor:
         low, high = (bound[:, : controls.shape[1]] for bound in (self.low, self.high))
@@ -337,6 +340,14 @@ def _median(curves: Tensor) -> Tensor:
     low = torch.maximum(torch.minimum(one, two), torch.minimum(four, five))
     high = torch.minimum(torch.maximum(one, two), torch.maximum(four, five))
     return torch.maximum(torch.minimum(low, high), torch.minimum(torch.maximum(low, high), three))
+
+
+def network_of(area: Area, *, widths: tuple[int, int, int], waves: int = 0) -> AreaNetwork:
+    """Build the untrained module of an area."""
+    outputs = len(area.shape_columns)
+    regressor = UNetConfig(len(area.controls), outputs, widths, waves, len(area.further))
+    autoencoder = UNetConfig(outputs, outputs, widths)
+    return AreaNetwork(regressor, autoencoder, held=area.held_inputs, shapes=area.shape_columns.tolist())
 
 
 def from_config(config: dict[str, Any]) -> AreaNetwork:
