@@ -22,7 +22,7 @@ from engine.take import SHAPES, Array
 
 NEAREST = 6  # real faces that the target of an impossible request is the mean of
 BANK = 12_000  # faces among which they are looked for
-OUTWEIGH = 3.0  # times the frames of the median person that one person may have in an epoch
+OUTWEIGH = 4.0  # times the frames of the median person that one person may have in an epoch
 
 
 @dataclass(frozen=True)
