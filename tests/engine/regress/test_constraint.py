@@ -62,7 +62,7 @@ def test_what_is_not_asked_is_not_held(face: Array) -> None:
 
 
 def test_where_the_eyes_look_counts_for_the_lids(face: Array) -> None:
-    area, down = AREAS[2], face.copy()
+    area, face = AREAS[2], face.copy()
     face[:, area.shape_columns] = 0.3
     down = face.copy()
     down[:, [SHAPE_INDEX[f"eyeLookDown{side}"] for side in ("Left", "Right")]] = 0.3

@@ -262,7 +262,8 @@ class AreaTrainer:
             batches.append(self._batch(self._valid, 1, torch.Generator().manual_seed(1)))
         with torch.inference_mode():
             terms = [self._losses(batch, stage) for batch in batches]
-        return {name: float(torch.stack([term[name] for term in terms]).mean()) for name in terms[0]}
+        named = {name: [term[name] for term in terms if name in term] for name in terms[0] | terms[-1]}
+        return {name: float(torch.stack(values).mean()) for name, values in named.items()}
 
 
 def material_of(area: Area, training: Sequence[Piece], settings: Settings) -> Source:
