@@ -93,7 +93,8 @@ class Constraint(nn.Module):
         spread = slope @ self.covariance  # (n, controls, shapes)
         gram = spread @ slope.mT + torch.diag(self.noise.exp())
         pull = torch.linalg.solve(gram, miss[:, :, None])
-        return weights + (pull.mT @ spread)[:, 0]
+        stepped: Tensor = weights + (pull.mT @ spread)[:, 0]
+        return stepped
 
     def _measured(self, weights: Tensor, around: Tensor) -> tuple[Tensor, Tensor]:
         """Return controls, (n, controls), and their slopes, (n, controls, shapes), of weights, (n, shapes)."""
