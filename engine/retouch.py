@@ -8,8 +8,7 @@ from scipy.signal import butter, sosfiltfilt
 from engine.easing import ease
 from engine.editing import Patch
 from engine.errors import EditError
-from engine.take import SHAPES, Array, Mask, Take
-from engine.words import counted
+from engine.take import SHAPES, Array, Mask, Take, require_frames
 
 PASTE_FEATHER_S = 0.13  # beside what is pasted; four frames at 30 fps, as long as a lip takes to open
 LOWEST_HZ = 0.001
@@ -24,8 +23,9 @@ def _patch(take: Take, start: int, weights: Array, *, found: Mask | None = None)
 def replace_weight(take: Take, shape: int, start: int, curve: Array) -> Patch:
     """Put a curve, (n,), in place of one weight from frame `start`, kept within the range 0..1 or the recorded one."""
     stop = start + len(curve)
-    if not 0 <= start < stop <= len(take) or not 0 <= shape < len(SHAPES):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
+    require_frames(take, start, stop)
+    if not 0 <= shape < len(SHAPES):
+        raise EditError(f"There is no shape {shape}.", f"Shapes are counted from 0 to {len(SHAPES) - 1}.")
     if not np.isfinite(curve).all():
         raise EditError("A weight must be a finite number.")
     weights = take.weights[start:stop].copy()
@@ -70,8 +70,7 @@ def smooth(take: Take, frames: tuple[int, int], cutoff_hz: float, *, feather_s: 
     Raises `EditError` for a cutoff that is not between 0 and half the frame rate.
     """
     start, stop = frames
-    if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
+    require_frames(take, start, stop)
     if not LOWEST_HZ <= cutoff_hz < take.fps / 2:
         raise EditError(f"The cutoff must be above {LOWEST_HZ:g} and below {take.fps / 2:g} Hz, half the frame rate.")
     if len(take) < 3:

@@ -50,8 +50,8 @@ class CleanSection(Section):
         self.side_by_side(self.preview_button, self.keep_button, self.drop_button)
         self.removed = QCheckBox("Show what is removed")
         self.removed.setToolTip("Draw it under each curve, on a scale of its own (Shift+R)")
-        self.removed.setChecked(session.shows_removed)
-        self.removed.toggled.connect(lambda on: session.show_removed(shown=on))
+        self.removed.setChecked(session.view.shows_removed)
+        self.removed.toggled.connect(lambda on: session.view.show_removed(shown=on))
         self.column.addWidget(self.removed)
         self._facts = quiet("The selection, or the whole take where nothing is selected.")
         self.column.addWidget(self._facts)
@@ -65,7 +65,7 @@ class CleanSection(Section):
 
     def preview(self) -> None:
         """Show what cleaning does."""
-        frames = self.session.selection or (0, len(self.session.take))
+        frames = self.session.view.selection or (0, len(self.session.document.take))
         strength = self.strength.value() / FULL
 
         def verb(dragger: Dragger) -> Patch:
@@ -95,13 +95,13 @@ class CleanSection(Section):
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TOOL:
-            self.removed.setChecked(self.session.shows_removed)
-        if change & Change.DRAFT and self.session.tool == "clean":
-            draft = self.session.draft
+            self.removed.setChecked(self.session.view.shows_removed)
+        if change & Change.DRAFT and self.session.view.tool == "clean":
+            draft = self.session.document.draft
             if draft is None or self._estimate is None:
                 self._facts.setText("The selection, or the whole take where nothing is selected.")
                 return
-            removed = np.abs(draft.weights - self.session.take.weights[draft.start : draft.stop])
+            removed = np.abs(draft.weights - self.session.document.take.weights[draft.start : draft.stop])
             lag = self._estimate[2]
             lines = [f"takes off {removed.mean():.4f} on average, {removed.max():.2f} at most"]
             lines += [f"lag {lag:.0f} ms at full strength"] if np.isfinite(lag) else []

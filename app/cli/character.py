@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from app.cli.performance import Carried
     from engine.character import Character
     from engine.formats.characters.assemble import Import
+    from engine.formats.characters.moving import MovingMesh
 
 Names = Annotated[
     list[str] | None, typer.Option("--name", help="Correct a match: the file's name=ARKit shape, or name=.")
@@ -138,26 +139,28 @@ def drive(
     sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Move a head that needs no shapes by points on its face; the head turns and goes as the markers do."""
-    import numpy as np
-
     from engine.formats.characters.animation import require_ending, write
-    from engine.formats.characters.moving import MovingMesh
-    from engine.manifold.drive import MeshDriver, aim
 
     require_ending(out)
     head = _head(mesh, unit=unit, up=up, facing=facing)
     performance = performance_of(
-        markers,
-        neutral=neutral,
-        unit=None,
-        fps=fps,
-        sides=sides,
-        changes=pairs(marker or []),
-        placed=points is not None,
+        markers, neutral=neutral, fps=fps, sides=sides, marker=marker, placed=points is not None
     )
     performance.show()
-    source = performance.source
-    followed = _followed(head, performance, points)
+    moving, followed = _moved(head, performance, points, still=still)
+    write(moving, out)
+    moved = f"{counted(len(moving.rest), 'vertex', 'vertices')} by {counted(followed, 'point')}"
+    say(f"Moved {moved} over {counted(len(moving.frames), 'frame')}. Written to {out}.")
+
+
+def _moved(head: Character, performance: Carried, points: Path | None, *, still: bool) -> tuple[MovingMesh, int]:
+    """Return a head moved by the markers of its points, and how many points those are."""
+    import numpy as np
+
+    from engine.formats.characters.moving import MovingMesh
+    from engine.manifold.drive import MeshDriver, aim
+
+    source, followed = performance.source, _followed(head, performance, points)
     shared = [name for name in followed if name in source.names]
     if len(shared) < 4:
         raise EditError(f"Only {len(shared)} of the mesh's points have a marker of their name.", "Name them alike.")
@@ -170,9 +173,7 @@ def drive(
         aimed = motion.apply(aimed)
     posed = (head.as_in_file(frame.astype(np.float32)) for frame in driver.frames(aimed))
     moving = MovingMesh(head.as_in_file(rest), head.triangles_in_file, np.stack(list(posed)), source.take.fps)
-    write(moving, out)
-    moved = f"{counted(len(moving.rest), 'vertex', 'vertices')} by {counted(len(shared), 'point')}"
-    say(f"Moved {moved} over {counted(len(aimed), 'frame')}. Written to {out}.")
+    return moving, len(shared)
 
 
 def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None) -> Character:
@@ -185,7 +186,7 @@ def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None)
 
 def _followed(head: Character, performance: Carried, points: Path | None) -> dict[str, int]:
     """Return which vertex of a head follows which marker, by a file or by what the markers were taken for."""
-    from engine.formats import markers_layout
+    from engine.formats.markers import layout as markers_layout
     from engine.spacetime.layout import standard
 
     if points is not None:

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 
 import typer
 
-from engine.formats import inputs
-from engine.formats.atomic import writable
+from engine.formats.base import inputs
+from engine.formats.base.atomic import writable
 
 OUTPUTS = frozenset({"out", "record", "key"})  # what commands call the files that they write
 GOES_ON = frozenset({"train"})  # from what it wrote before

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.reading import open_take
 from engine.errors import EditError
-from engine.formats.content import require_file, unread
-from engine.formats.livelink_plain import HEADER_BYTES, form_of
+from engine.formats.base.content import require_file, unread
+from engine.formats.livelink.plain import HEADER_BYTES, form_of
 from engine.words import counted
 
 if TYPE_CHECKING:
@@ -60,10 +61,10 @@ def performance_of(
     path: Path,
     *,
     neutral: int,
-    unit: str | None,
     fps: float | None,
     sides: str,
-    changes: dict[str, str] | None = None,
+    unit: str | None = None,
+    marker: Sequence[str] | None = None,
     placed: bool = False,
 ) -> Carried:
     """Read a take or a capture; raises `EngineError`.
@@ -72,10 +73,10 @@ def performance_of(
     ----------
     path : the file
     neutral : for a capture, a frame in which the face is at rest
-    unit : for a capture, instead of what the file says
     fps : instead of what the file says
     sides : of a take, as `--sides` has it
-    changes : landmarks by marker that were corrected
+    unit : for a capture, instead of what the file says
+    marker : corrections of what markers were taken for, `name=landmark` each
     placed : whether a landmark file says where the markers are: their names need not be understood then
     """
     from engine.character import bundled
@@ -83,6 +84,7 @@ def performance_of(
     from engine.formats.characters.marker_places import match_markers
     from engine.spacetime.source import from_markers, from_take
 
+    changes = pairs(marker or [])
     if path.suffix.lower() not in markers.ENDINGS or is_take(path):
         if changes:
             raise EditError("A take has no markers to correct.", "Leave out --marker.")
@@ -92,7 +94,7 @@ def performance_of(
         raise EditError(f"Frame {neutral} is not within the capture, which has {counted(len(capture), 'frame')}.")
     if placed:
         return Carried(from_markers(capture, neutral_frame=neutral))
-    table = match_markers(capture.positions[neutral], capture.names).corrected(changes or {})
+    table = match_markers(capture.positions[neutral], capture.names).corrected(changes)
     return Carried(from_markers(capture, neutral_frame=neutral, turn=table.turn, landmarks=table.landmarks), table)
 
 
@@ -106,7 +108,7 @@ def is_take(path: Path) -> bool:
         raise unread(path, error) from error
 
 
-def pairs(texts: list[str]) -> dict[str, str]:
+def pairs(texts: Sequence[str]) -> dict[str, str]:
     """Return what `name=value` texts say, by name; raises `EditError` for another text."""
     found = {}
     for text in texts:

@@ -16,7 +16,7 @@ from engine.quality import KINDS
 from engine.words import counted
 
 if TYPE_CHECKING:
-    from engine.formats.reading import Reading
+    from engine.formats.base.reading import Reading
     from engine.quality import Flag
     from engine.review.changes import Change, Comparison
     from engine.review.report import Draw, Review
@@ -39,7 +39,7 @@ def review(
     sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Show what was changed between two takes, or in a project, and by how much."""
-    from engine.formats.reading import Reading
+    from engine.formats.base.reading import Reading
     from engine.review import pairs
 
     reading = Reading(fps, sides_of(sides))
@@ -72,7 +72,7 @@ def check(
     sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Check takes for a pipeline: exit code 0 where all are fine, 1 where flags were found, 2 where one cannot be read."""
-    from engine.formats.reading import Reading
+    from engine.formats.base.reading import Reading
     from engine.review import pairs
 
     reading = Reading(fps, sides_of(sides))
@@ -106,7 +106,7 @@ def _counted(flags: object) -> str:
 
 def _review_queue(folder: Path, out: Path | None, reading: Reading, *, pictures: bool) -> None:
     """Write a report of each pair, and a page that lists them; a pair that cannot be read does not stop the others."""
-    from engine.formats.atomic import write_bytes
+    from engine.formats.base.atomic import write_bytes
     from engine.review import pairs
     from engine.review.report import Entry, index
 
@@ -133,7 +133,7 @@ def _review_queue(folder: Path, out: Path | None, reading: Reading, *, pictures:
 
 
 def _write(found: Review, out: Path, *, pictures: bool) -> None:
-    from engine.formats.atomic import write_bytes
+    from engine.formats.base.atomic import write_bytes
     from engine.review.report import html
 
     draw, full_mm = _drawing(found.comparison) if pictures else (None, 0.0)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli import labelled
-from app.cli.performance import MARKER_HELP, Carried, pairs, performance_of
+from app.cli.performance import MARKER_HELP, Carried, performance_of
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from app.printing import say
 from engine.errors import EditError
@@ -96,22 +96,9 @@ def retarget(
     marker: Annotated[list[str] | None, typer.Option("--marker", help=MARKER_HELP)] = None,
 ) -> None:
     """Carry markers or a take to another character."""
-    from engine.formats import format_of
-
-    if method is not Method.MANIFOLD and (labels is not None or suggest is not None):
-        raise EditError("Labelled frames belong to the other method.", "Add --method manifold.")
-    if out is None and suggest is None:
-        raise EditError("Say where the new take is written.", "Name it with -o.")
-    if out is not None:
-        format_of(out)  # an ending that cannot be written is told before the work, not after it
+    _require_sense(method, labelled=labels is not None or suggest is not None, out=out, suggests=suggest is not None)
     performance = performance_of(
-        source,
-        neutral=neutral,
-        unit=unit,
-        fps=fps,
-        sides=sides,
-        changes=pairs(marker or []),
-        placed=landmarks is not None,
+        source, neutral=neutral, unit=unit, fps=fps, sides=sides, marker=marker, placed=landmarks is not None
     )
     if suggest is not None:
         say("\n".join(map(str, labelled.suggest(performance.source, suggest, labels))))
@@ -127,6 +114,18 @@ def retarget(
     for notice in made.notices:
         say(notice)
     say(f"Moved {target.name} by {counted(len(made), 'frame')} of {source.name}. Written to {out}.")
+
+
+def _require_sense(method: Method, *, labelled: bool, out: Path | None, suggests: bool) -> None:
+    """Raise `EditError` where the options do not go together: better told before the work than after it."""
+    from engine.formats import format_of
+
+    if method is not Method.MANIFOLD and labelled:
+        raise EditError("Labelled frames belong to the other method.", "Add --method manifold.")
+    if out is None and not suggests:
+        raise EditError("Say where the new take is written.", "Name it with -o.")
+    if out is not None:
+        format_of(out)
 
 
 def _matching(*, alpha: float | None, beta: float | None, closure: float | None, unbounded: bool) -> Matching:
@@ -145,8 +144,8 @@ def _carried(
     performance: Carried, character: Path | None, landmarks: Path | None, matching: Matching
 ) -> tuple[Take, Character]:
     from engine.character import bundled
-    from engine.formats import markers_layout
     from engine.formats.characters.opening import character_of
+    from engine.formats.markers import layout as markers_layout
     from engine.spacetime.layout import named
     from engine.spacetime.retarget import retarget as carry
 

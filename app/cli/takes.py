@@ -30,8 +30,8 @@ def info(
     from engine.controls import ALL_CONTROLS
     from engine.extended import bundled_face
     from engine.formats import livelink
-    from engine.formats.importing import imported, in_words
-    from engine.formats.reading import Reading
+    from engine.formats.base.reading import Reading
+    from engine.formats.livelink.importing import imported, in_words
 
     opened = open_take(take, fps, sides)
     measured = bundled_face().measure(opened.weights)

@@ -77,7 +77,7 @@ class PinsSection(Section):
     def range(self) -> tuple[int, int]:
         """The half-open range that the pin spreads over."""
         return max(0, self._frame - self.before.value()), min(
-            len(self.session.take), self._frame + self.after.value() + 1
+            len(self.session.document.take), self._frame + self.after.value() + 1
         )
 
     def keep(self) -> None:
@@ -87,11 +87,13 @@ class PinsSection(Section):
         session, (start, stop) = self.session, self.range
         pin = Pin(self._frame, dict(self._pose), start, stop)
         names = ", ".join(list(self._pose)[:2])
-        others = tuple(other for other in session.marks.pins if other.frame != pin.frame)
+        others = tuple(other for other in session.document.marks.pins if other.frame != pin.frame)
         pins = tuple(sorted((*others, pin), key=lambda each: each.frame))
         inputs = {"frame": self._frame, "weights": dict(self._pose), "range": [start, stop]}
         self._pose = {}
-        self._inference.finish(f"pin {names}", kind="pin", inputs=inputs, marks=replace(session.marks, pins=pins))
+        self._inference.finish(
+            f"pin {names}", kind="pin", inputs=inputs, marks=replace(session.document.marks, pins=pins)
+        )
 
     def drop(self) -> None:
         """Let the pose spring back."""
@@ -102,23 +104,23 @@ class PinsSection(Section):
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
             self._reset_range()
-        if change & (Change.TAKE | Change.PLAYHEAD | Change.CURVES | Change.TOOL) and self.session.tool == "pin":
+        if change & (Change.TAKE | Change.PLAYHEAD | Change.CURVES | Change.TOOL) and self.session.view.tool == "pin":
             if change & (Change.PLAYHEAD | Change.TAKE) and self._pose:
                 self.drop()
-            self._frame = self.session.playhead
+            self._frame = self.session.view.playhead
             self._show_sliders()
 
     def _reset_range(self) -> None:
-        reach = round(SPREAD_S * self.session.take.fps)
+        reach = round(SPREAD_S * self.session.document.take.fps)
         for box in (self.before, self.after):
             with QSignalBlocker(box):
                 box.setValue(reach)
 
     def _show_sliders(self) -> None:
         """Show the shapes that match the search, or else those most active around the playhead."""
-        self._frame = self.session.playhead
-        face, (start, stop) = self.session.take.weights[self._frame], self.range
-        activity = np.ptp(self.session.take.weights[start:stop], axis=0) + face
+        self._frame = self.session.view.playhead
+        face, (start, stop) = self.session.document.take.weights[self._frame], self.range
+        activity = np.ptp(self.session.document.take.weights[start:stop], axis=0) + face
         self._weights.show_face(face, activity, self._pose)
 
     def _move(self, name: str, value: float) -> None:

@@ -14,7 +14,7 @@ from app.preview.camera import Camera
 from app.preview.encoding import codec_named
 from app.preview.renderer import Picture, Renderer, Shot
 from engine.character import Character, bundled
-from engine.formats.atomic import write_bytes
+from engine.formats.base.atomic import write_bytes
 from engine.take import Array, Take
 
 if TYPE_CHECKING:

@@ -45,7 +45,7 @@ class Labelling:
 
     def label(self) -> None:
         """Keep the target's pose at the playhead as a label; raises `EditError` where there is no target."""
-        frame = self._session.playhead
+        frame = self._session.view.playhead
         face = self._retargeting.face_at(frame)
         if face is None:
             raise EditError("There is no target to label.", "Choose a target in the Retarget panel.")
@@ -54,7 +54,7 @@ class Labelling:
 
     def unlabel(self) -> None:
         """Remove the label at the playhead."""
-        frame, labels = self._session.playhead, self._retargeting.target.labels
+        frame, labels = self._session.view.playhead, self._retargeting.target.labels
         if frame in labels:
             rest = {each: pose for each, pose in labels.items() if each != frame}
             self._change(rest, f"remove the label of frame {frame}")
@@ -73,7 +73,7 @@ class Labelling:
 
     def read(self, path: Path) -> None:
         """Read labels, and open the head that they are for where the file names one; raises `EngineError`."""
-        stored, frames, state = files.read(path), len(self._session.take), self._retargeting
+        stored, frames, state = files.read(path), len(self._session.document.take), self._retargeting
         outside = [frame for frame in stored.labels if frame >= frames]
         if outside:
             raise EditError(f"{path.name} labels frame {outside[0]}; the take has {counted(frames, 'frame')}.")
@@ -88,7 +88,7 @@ class Labelling:
         if stored.target is None or (known is not None and known.absolute() == stored.target.absolute()):
             self._change(stored.labels, f"read {path.name}")
         else:
-            state.choose_target(stored.target, stored.labels)
+            state.choosing.choose_target(stored.target, stored.labels)
 
     def write(self, path: Path) -> None:
         """Write labels; raises `EngineError`."""

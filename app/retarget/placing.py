@@ -7,7 +7,7 @@ from pathlib import Path
 
 from app.retarget.carry import Carrier, Target, with_markers, with_place
 from app.retarget.retargeting import Retargeting
-from engine.formats import markers_layout
+from engine.formats.markers import layout as markers_layout
 
 
 class Placing:

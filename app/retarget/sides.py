@@ -29,9 +29,9 @@ def sides(session: Session, retargeting: Retargeting, chosen: str, *, dots: bool
     `chosen` is the marker that a click on the target places; `dots` are drawn on heads where they are asked for.
     """
     target, head = retargeting.target, retargeting.target.head
-    if session.tool != "retarget" or (head is not None and not retargeting.ready):
+    if session.view.tool != "retarget" or (head is not None and not retargeting.ready):
         return ()
-    frame = session.playhead
+    frame = session.view.playhead
     capture = retargeting.capture
     if capture is not None:
         left = _of_capture(capture, frame, chosen if dots else "")
@@ -54,7 +54,9 @@ def _of_take(session: Session, head: Character, chosen: str, *, dots: bool) -> S
             Dot(name, vertex, number=str(number), chosen=name == chosen)
             for number, (name, vertex) in enumerate(_standard(head), 1)
         )
-    return Side(f"{session.name} · {head.name}", session.frame_weights(session.playhead), head, shown)
+    return Side(
+        f"{session.document.name} · {head.name}", session.document.frame_weights(session.view.playhead), head, shown
+    )
 
 
 def _of_capture(capture: Source, frame: int, chosen: str) -> Side:

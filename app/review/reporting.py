@@ -36,8 +36,8 @@ class Reporting(QObject):
         super().__init__()
         self._process: subprocess.Popen[str] | None = None
         self._work = LatestWins(self._carry_out, name="report")
-        self._work.done.connect(lambda wish, _: self.written.emit(wish.out))
-        self._work.failed.connect(lambda _wish, sentence, advice: self.failed.emit(sentence, advice))
+        self._work.done.connect(self._done)
+        self._work.failed.connect(self._refused)
 
     @property
     def idle(self) -> bool:
@@ -58,6 +58,12 @@ class Reporting(QObject):
         """End the process and the thread."""
         self.cancel()
         self._work.stop()
+
+    def _done(self, wish: _Wish, _: None) -> None:
+        self.written.emit(wish.out)
+
+    def _refused(self, wish: _Wish, sentence: str, advice: str) -> None:
+        self.failed.emit(sentence, advice)
 
     def _carry_out(self, wish: _Wish) -> None:
         with tempfile.TemporaryDirectory(prefix="retake-review-") as folder:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
+from app.session.changes import Change
 from app.session.commands import EditCommand
-from app.session.session import Change, Session
+from app.session.session import Session
 from app.session.wishes import Wish, Wishes
 from engine.project import Marks
 from engine.take import Array, Take
@@ -98,7 +99,11 @@ class Inference(QObject):
         if self._title is not None:
             return False  # the edit before is being finished; it takes a few milliseconds
         session = self._session
-        self._last = Request(session.take, *(of or (session.take, session.controls, session.asked)), verb)
+        self._last = Request(
+            session.document.take,
+            *(of or (session.document.take, session.document.controls, session.document.asked)),
+            verb,
+        )
         self._work.submit(self._last)
         return True
 
@@ -117,7 +122,7 @@ class Inference(QObject):
         if self._last is None:
             return
         self._title, self._kind, self._inputs, self._marks = title, kind, {**(inputs or {}), **self._how}, marks
-        draft = self._session.draft
+        draft = self._session.document.draft
         if draft is not None and self._shown is self._last:
             self._commit(draft)
 
@@ -128,7 +133,7 @@ class Inference(QObject):
     def cancel(self) -> None:
         """Forget the edit under way."""
         self._last = self._title = None
-        self._session.set_draft(None)
+        self._session.document.set_draft(None)
 
     def close(self) -> None:
         """End the thread."""
@@ -149,32 +154,32 @@ class Inference(QObject):
         if request is None or patch is None:
             self.ready.emit()
             return
-        if self._last is None or request.open is not self._session.take:
+        if self._last is None or request.open is not self._session.document.take:
             return  # cancelled, or another take was opened meanwhile
         self.since, self._shown = request.since, request
-        self._session.set_draft(patch)
+        self._session.document.set_draft(patch)
         if self._title is not None and request is self._last:
             self._commit(patch)
 
     def _commit(self, patch: Patch) -> None:
         title, self._title, self._last = self._title, None, None
-        step = EditCommand(
-            self._session, patch, title or "edit", kind=self._kind, inputs=self._inputs, marks=self._marks
+        step = EditCommand.of(
+            self._session.document, patch, title or "edit", kind=self._kind, inputs=self._inputs, marks=self._marks
         )
         wish, self._wish = self._wish, None
-        self._session.undo.push(step)
+        self._session.document.undo.push(step)
         if wish is not None:
             self._wishes.made(step, wish, start=patch.start, stop=patch.stop)
 
     def _refused(self, request: object, sentence: str, advice: str) -> None:
         self._last = self._title = None
-        self._session.set_draft(None)
+        self._session.document.set_draft(None)
         self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.READING):
             self._last = self._title = None
             self._wishes.forget()
-        changed = self._wish is not None and self._wish.believability != self._session.believability
+        changed = self._wish is not None and self._wish.believability != self._session.view.believability
         if change & Change.TOOL and self.busy and self._curves is not None and changed:
             self.ask(*self._curves)

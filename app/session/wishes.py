@@ -52,12 +52,26 @@ class Wishes:
         """Return the wish for curves, (n, 16) from frame `start`, together with those of the drags it overlaps."""
         session = self.session
         rows = slice(start, start + len(asked))
-        new = np.where(asked == session.controls[rows], np.nan, asked)
+        new = np.where(asked == session.document.controls[rows], np.nan, asked)
         below = self._of_the_last_step()
-        if below is None or below.believability != session.believability:
-            return Wish(session.take, session.controls, session.asked, start, new, session.believability)
+        if below is None or below.believability != session.view.believability:
+            return Wish(
+                session.document.take,
+                session.document.controls,
+                session.document.asked,
+                start,
+                new,
+                session.view.believability,
+            )
         if not (below.start < start + len(new) and start < below.stop):
-            return Wish(session.take, session.controls, session.asked, start, new, session.believability)
+            return Wish(
+                session.document.take,
+                session.document.controls,
+                session.document.asked,
+                start,
+                new,
+                session.view.believability,
+            )
         first, last = min(start, below.start), max(start + len(new), below.stop)
         both = np.full((last - first, new.shape[1]), np.nan)
         both[below.start - first : below.stop - first] = below.asked
@@ -79,6 +93,6 @@ class Wishes:
         self._made = []
 
     def _of_the_last_step(self) -> Wish | None:
-        undo = self.session.undo
+        undo = self.session.document.undo
         last = undo.command(undo.index() - 1) if undo.index() else None
         return next((wish for step, wish in self._made if step is last), None)

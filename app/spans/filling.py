@@ -107,8 +107,8 @@ class Filling(QObject):
         With `keep_curves` its asked curves are followed, with `keep_visemes` the mouth says what the visemes lane does.
         """
         session = self._session
-        inside = [pin for pin in session.marks.pins if span.start <= pin.frame < span.stop]
-        others = [(other.start, other.stop) for other in session.marks.spans if other != span]
+        inside = [pin for pin in session.document.marks.pins if span.start <= pin.frame < span.stop]
+        others = [(other.start, other.stop) for other in session.document.marks.spans if other != span]
         filled = _filled(session)
         steering = Request(
             frames=(span.start, span.stop),
@@ -131,13 +131,13 @@ class Filling(QObject):
 
     def _make(self, steering: Request, seed: int) -> None:
         self.busy, self.seed = True, seed
-        self._request = FillRequest(self._session.take, steering, seed)
+        self._request = FillRequest(self._session.document.take, steering, seed)
         self._work.submit(self._request)
         self.changed.emit()
 
     def said(self, span: Span) -> tuple[Cue, ...]:
         """Return the cues of the visemes lane that reach into a span, in seconds of the take."""
-        lane, fps = self._session.visemes, self._session.take.fps
+        lane, fps = self._session.document.visemes, self._session.document.take.fps
         return lane.over(span.start / fps, span.stop / fps) if lane is not None else ()
 
     def again(self) -> None:
@@ -149,7 +149,7 @@ class Filling(QObject):
         """Show a variant, counted around."""
         if self.variants:
             self.chosen = index % len(self.variants)
-            self._session.set_draft(self.variants[self.chosen])
+            self._session.document.set_draft(self.variants[self.chosen])
             self.changed.emit()
 
     def accept(self) -> None:
@@ -161,13 +161,13 @@ class Filling(QObject):
         inputs = {**request.inputs, "seed": self.chosen_seed}
         self._forget()
         title = f"fill {counted(stop - start, 'frame')}"
-        self._session.undo.push(EditCommand(self._session, patch, title, kind=FILL, inputs=inputs))
+        self._session.document.undo.push(EditCommand.of(self._session.document, patch, title, kind=FILL, inputs=inputs))
 
     def drop(self) -> None:
         """Keep none."""
         if self.variants or self.busy:
             self._forget()
-            self._session.set_draft(None)
+            self._session.document.set_draft(None)
 
     def close(self) -> None:
         """End the thread."""
@@ -178,7 +178,7 @@ class Filling(QObject):
         self.changed.emit()
 
     def _asked(self, span: Span) -> dict[str, Array]:
-        asked = self._session.asked[span.start : span.stop]
+        asked = self._session.document.asked[span.start : span.stop]
         return {
             control.name: asked[:, column]
             for column, control in enumerate(CONTROLS)
@@ -186,10 +186,10 @@ class Filling(QObject):
         }
 
     def _arrived(self, request: FillRequest, patches: list[Patch]) -> None:
-        if request is not self._request or request.take is not self._session.take:
+        if request is not self._request or request.take is not self._session.document.take:
             return
         self.variants, self.busy, self._seen = patches, False, request.steering.frames
-        self._session.move_playhead(sum(request.steering.frames) // 2)
+        self._session.view.move_playhead(sum(request.steering.frames) // 2)
         self.choose(0)
 
     def _refused(self, request: FillRequest, sentence: str, advice: str) -> None:
@@ -205,8 +205,8 @@ class Filling(QObject):
 
 def _filled(session: Session) -> Mask:
     """Return which frames, (frames,) bool, fills in effect have made."""
-    filled = np.zeros(len(session.take), bool)
-    contents = session.contents()
+    filled = np.zeros(len(session.document.take), bool)
+    contents = session.document.contents()
     for edit in contents.edits[: contents.position]:
         if edit.kind == FILL:
             filled[edit.start : edit.stop] = True if edit.lost is None else ~edit.lost

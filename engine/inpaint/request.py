@@ -13,7 +13,7 @@ from engine.errors import EditError
 from engine.inpaint.regions import region_shapes
 from engine.pose import Pose, filled
 from engine.speech.visemes import Cue, class_of
-from engine.take import SHAPES, Array, Take
+from engine.take import SHAPES, Array, Take, require_frames
 from engine.words import counted
 
 LOWEST, HIGHEST = -0.1, 1.1  # recorded weights stray a little outside 0..1
@@ -81,8 +81,7 @@ def checked(request: Request, take: Take) -> Request:
 
 def _check_span(request: Request, take: Take) -> None:
     start, stop = request.frames
-    if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
+    require_frames(take, start, stop)
     if stop - start < 2 and not request.lost:
         raise EditError("A span of one frame cannot be filled.", "Mark at least two frames.")
     if request.style not in STYLES:

@@ -9,14 +9,12 @@ import numpy as np
 
 from engine.anatomy import EXCLUSIVE, clash
 from engine.character import bundled
-from engine.formats.livelink_sides import EXCHANGED, PULLING, judge
+from engine.formats.livelink.sides import EXCHANGED, PULLING, judge
+from engine.jaw import limited
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen, strengths
-from engine.quality.tuning import TUNING
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, runs
 
-_T = TUNING
-_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 _SIDES = ("Left", "Right")
 _TELLING = 20_000  # frames that tell the sides; of a longer take every second one, every third, ...
 _MEETING = (
@@ -29,19 +27,21 @@ _MEETING = (
 def impossible(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames with two shapes that exclude each other."""
     strength = strengths(seen, low, high, reach=0, verdict=lambda weights, _: clash(weights)[0])
-    for start, stop in runs(strength > _T.both):
+    for start, stop in runs(strength > seen.tuning.both):
         worst = start + int(np.argmax(strength[start:stop]))
         _, which = clash(seen.weights[low + worst : low + worst + 1])
         first, second, reason = EXCLUSIVE[which[0]]
         text = f"{first} and {second} are both at {strength[worst]:.2f} or more: {reason}."
-        yield Flag("impossible", low + start, low + stop, weight_of(strength[worst], _T.both, 1.0), text)
+        yield Flag("impossible", low + start, low + stop, weight_of(strength[worst], seen.tuning.both, 1.0), text)
 
 
 def out_of_range(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames with a weight that is negative or above 1 by more than rounding."""
 
     def verdict(weights: Array, kept: Mask) -> Array:
-        beyond = np.maximum(_T.least_weight - weights.min(axis=1), weights.max(axis=1) - _T.most_weight)
+        beyond = np.maximum(
+            seen.tuning.least_weight - weights.min(axis=1), weights.max(axis=1) - seen.tuning.most_weight
+        )
         return np.asarray(np.where(kept, beyond, 0.0))
 
     beyond = strengths(seen, low, high, reach=0, verdict=verdict)
@@ -49,26 +49,26 @@ def out_of_range(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         row = seen.weights[low + start + int(np.argmax(beyond[start:stop]))]
         worst = int(np.argmax(np.maximum(-row, row - 1.0)))
         text = f"{SHAPES[worst]} is at {row[worst]:.2f}; weights go from 0 to 1."
-        weight = weight_of(float(beyond[start:stop].max()), 0.0, _T.full_beyond)
+        weight = weight_of(float(beyond[start:stop].max()), 0.0, seen.tuning.full_beyond)
         yield Flag("range", low + start, low + stop, weight, text)
 
 
 def swapped(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield the whole take where the mouth goes to one side and the other side's muscles pull."""
-    if seen.length < _T.swapped_frames:
+    if seen.length < seen.tuning.swapped_frames:
         return
     names = [name for pair in EXCHANGED for name in pair] + [f"{shape}{side}" for shape in PULLING for side in _SIDES]
     part = slice(None, None, 1 + seen.length // _TELLING)
     agreement = judge({name: seen.weights[part, SHAPE_INDEX[name]] for name in names}, seen.kept[part]).agreement
-    if agreement is not None and -agreement > _T.swapped:
+    if agreement is not None and -agreement > seen.tuning.swapped:
         text = f"Left and right of the mouth look exchanged (correlation {agreement:+.2f})."
-        weight = weight_of(-agreement, _T.swapped, _T.full_swapped)
+        weight = weight_of(-agreement, seen.tuning.swapped, seen.tuning.full_swapped)
         yield Flag("swapped", 0, seen.length, weight, text)
 
 
 def crossing(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames on which the lips or the lids of the bundled head pass through each other."""
-    for name, through_mm in (("lip", _T.through_lips_mm), ("lid", _T.through_lids_mm)):
+    for name, through_mm in (("lip", seen.tuning.through_lips_mm), ("lid", seen.tuning.through_lids_mm)):
 
         def verdict(weights: Array, kept: Mask, name: str = name) -> Array:
             return np.asarray(np.where(kept, crossed_mm(weights, name), 0.0))
@@ -77,14 +77,15 @@ def crossing(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         for start, stop in runs(depth > through_mm):
             most = float(depth[start:stop].max())
             text = f"The {name}s pass through each other by {most:.1f} mm on the head."
-            yield Flag("through", low + start, low + stop, weight_of(most, through_mm, _T.full_through_mm), text)
+            yield Flag(
+                "through", low + start, low + stop, weight_of(most, through_mm, seen.tuning.full_through_mm), text
+            )
 
 
 def crossed_mm(weights: Array, name: str) -> Array:
     """Return by how much the lower lip or lid is above the upper one, (frames,) mm, negative where it is below."""
     rest, basis = _gaps(name)
-    drawn = weights.copy()  # lips close no further than the jaw has opened, as the character is drawn
-    drawn[:, _CLOSE] = np.minimum(weights[:, _CLOSE], np.maximum(weights[:, _JAW], 0.0))
+    drawn = limited(weights)
     # einsum sums a row alike wherever it stands; a matrix product does not, and flags must not depend on that
     return np.asarray(
         -np.min([np.einsum("fs,s->f", drawn, one) + gap for gap, one in zip(rest, basis, strict=True)], 0)

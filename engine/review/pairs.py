@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from engine.errors import EditError
 from engine.formats import FORMATS, audio, read_take
-from engine.formats.reading import Reading
+from engine.formats.base.reading import Reading
 from engine.project import ENDING, Project, replay
-from engine.quality import Flag, Seen, flags_of, seen_of, sound_of
+from engine.quality import Dismissal, Flag, FlagSettings, Seen, flags_of, parted, seen_of, sound_of
 from engine.review.changes import Edited, compare
 from engine.review.report import Remark, Review
 from engine.take import Take
@@ -22,7 +22,12 @@ QUEUE = 10_000  # pairs; a folder of more is a slip
 
 @dataclass(frozen=True, eq=False)
 class _Opened:
-    """A file as a reviewer sees it: the take, what it was made from if it tells, notes, verdict and edits."""
+    """A file as a reviewer sees it: the take, what it was made from if it tells, notes, verdict and edits.
+
+    Attributes
+    ----------
+    settings, dismissals : of its project: what is looked for, and what somebody does not mind
+    """
 
     take: Take
     original: Take | None
@@ -30,6 +35,12 @@ class _Opened:
     verdict: str = ""
     remarks: tuple[Remark, ...] = ()
     edits: tuple[Edited, ...] = ()
+    settings: FlagSettings = field(default_factory=FlagSettings)
+    dismissals: tuple[Dismissal, ...] = ()
+
+    def flags(self, seen: Seen) -> tuple[Flag, ...]:
+        """Return what counts of the findings on something that is seen, by the settings of this project."""
+        return parted(flags_of(seen, self.settings), self.dismissals)[0]
 
 
 def review(before: Path | None, after: Path, *, offset_s: float | None = None, reading: Reading = AS_IT_IS) -> Review:
@@ -50,8 +61,8 @@ def review(before: Path | None, after: Path, *, offset_s: float | None = None, r
         earlier, seen = first.take, first.seen
     return Review(
         compare(earlier, opened.take, offset_s=offset_s, edits=opened.edits),
-        flags_of(seen),
-        flags_of(opened.seen),
+        opened.flags(seen),
+        opened.flags(opened.seen),
         opened.verdict,
         opened.remarks,
         opened.edits,
@@ -61,13 +72,16 @@ def review(before: Path | None, after: Path, *, offset_s: float | None = None, r
 def flags(path: Path, reading: Reading = AS_IT_IS, *, sound: bool = False) -> tuple[Flag, ...]:
     """Return the automatic findings of a take, or of a project with its edits; with `sound`, of the one beside it too.
 
+    A project's own thresholds count, and what was dismissed in it is left out.
+
     Raises `EngineError` where the take or that sound cannot be read.
     """
-    seen = _open(path, reading).seen
+    opened = _open(path, reading)
+    seen = opened.seen
     heard = audio.beside(path) if sound else None
     if heard is not None:
         seen = replace(seen, sound=sound_of(audio.read(heard), fps=seen.fps))
-    return flags_of(seen)
+    return opened.flags(seen)
 
 
 def pairs(folder: Path) -> list[tuple[Path, Path]]:
@@ -106,15 +120,16 @@ def _open(path: Path, reading: Reading) -> _Opened:
     if path.suffix.lower() != ENDING:
         take = read_take(path, reading=reading)
         return _Opened(take, None, seen_of(take))
-    project = Project.open(path)
+    project = Project.open(path, read_only=True)
     try:
         contents = project.contents
         state = replay(contents)
     finally:
         project.close()
     edits = tuple(
-        Edited(edit.title, edit.start, edit.stop) for edit in contents.edits[: contents.position] if len(edit.weights)
+        Edited(edit.title, edit.start, edit.stop) for edit in contents.edits[: contents.position] if edit.changes_frames
     )
     remarks = tuple(Remark(note.frame, note.author, note.time, note.text) for note in contents.marks.notes)
-    seen = seen_of(state.take, contents.original, state.asked, state.visemes)
-    return _Opened(state.take, contents.original, seen, contents.marks.verdict, remarks, edits)
+    original, marks = state.original or contents.original, contents.marks
+    seen = seen_of(state.take, original, state.asked, state.visemes)
+    return _Opened(state.take, original, seen, marks.verdict, remarks, edits, marks.flags, marks.dismissals)

@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from engine import assets
 from engine.controls import CONTROLS
 from engine.quality import KINDS, Flag
 from engine.review.changes import Change, Comparison, Edited
@@ -168,7 +168,7 @@ def index(entries: Sequence[Entry]) -> str:
 def _environment() -> Environment:
     """Return what fills in the templates; everything put into them is escaped."""
     return Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+        loader=FileSystemLoader(assets.TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
 
 

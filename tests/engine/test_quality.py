@@ -11,7 +11,7 @@ from engine.anatomy import clash
 from engine.controls import CONTROL_INDEX, measure
 from engine.formats import read_take
 from engine.formats.audio import Audio
-from engine.formats.livelink_sides import exchange
+from engine.formats.livelink.sides import exchange
 from engine.lab.performer import demo
 from engine.quality import (
     CLOSED_MM,

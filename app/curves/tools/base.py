@@ -71,7 +71,7 @@ class Tool:
 
             self.panel.inference.run(replace)
             return
-        asked = session.controls[start : start + len(curve)].copy()
+        asked = session.document.controls[start : start + len(curve)].copy()
         asked[:, column] = curve.clip(min=CURVES[lane].lowest)
         self.panel.inference.ask(start, asked)
 

@@ -18,7 +18,7 @@ import numpy as np
 import torch
 
 from engine.errors import AssetError
-from engine.formats.atomic import write_bytes
+from engine.formats.base.atomic import write_bytes
 from engine.lab.corpus import NEVER_TRAINED, Piece, load_takes, person_of, pieces_of, split, whole_faces
 from engine.lab.evaluate.baselines import hsk16, ridge
 from engine.lab.evaluate.baselines.nearest import Nearest

@@ -52,7 +52,7 @@ def test_what_cannot_be_written_is_refused_before_anything_is_read(
         raise AssertionError("it was begun")
 
     monkeypatch.setattr("engine.formats.livelink.read", work)
-    monkeypatch.setattr("engine.formats.content.require_file", work)
+    monkeypatch.setattr("engine.formats.base.content.require_file", work)
     assert cli.run([*line, "-o", str(tmp_path / name)]) == 2
     assert capsys.readouterr().err.count("\n") == 1 and not list(tmp_path.iterdir())
 

@@ -11,8 +11,8 @@ from app import cli
 from app.cli import labelled
 from engine.character import BUNDLED, bundled, save
 from engine.formats import labels, read_take, write_take
-from engine.formats.capture import Markers
 from engine.formats.markers import write
+from engine.formats.markers.capture import Markers
 from engine.lab.performer import demo
 from engine.manifold.retarget import retarget_weights
 from engine.spacetime.layout import standard

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from engine import project
-from engine.formats.lock import FileLock
+from engine.formats.base.lock import FileLock
 from engine.project import Contents, DisplacedError, InUseError, Project, database
 from engine.take import SHAPES, Take
 from tests.engine.project.projects import an_edit, reopened, same
@@ -167,7 +167,7 @@ def test_a_lock_of_another_computer_counts_while_it_is_refreshed(
     held = FileLock(path)
     owned_elsewhere(lock := tmp_path / ".a.retake.lock", "other")
     turns = iter(range(1, 10**6))
-    monkeypatch.setattr("engine.formats.lock.time.sleep", lambda _: os.utime(lock, (next(turns), next(turns))))
+    monkeypatch.setattr("engine.formats.base.lock.time.sleep", lambda _: os.utime(lock, (next(turns), next(turns))))
     with pytest.raises(InUseError, match="in Retake on other"):
         FileLock(path)
     assert not held.held  # as its own computer would find if it slept: somebody else's name is in it
@@ -180,7 +180,7 @@ def test_a_lock_that_another_computer_left_is_taken_over_after_a_lease(
 ) -> None:
     path, now = tmp_path / "a.retake", [0.0]
     monkeypatch.setattr("time.monotonic", lambda: now[0])
-    monkeypatch.setattr("engine.formats.lock.time.sleep", lambda seconds: now.__setitem__(0, now[0] + seconds))
+    monkeypatch.setattr("engine.formats.base.lock.time.sleep", lambda seconds: now.__setitem__(0, now[0] + seconds))
     left = FileLock(path)
     left._lease._stop_heartbeat()
     owned_elsewhere(tmp_path / ".a.retake.lock", "other")

@@ -13,8 +13,8 @@ from engine import project
 from engine.controls import ALL_CONTROLS
 from engine.errors import EngineError, FormatError
 from engine.formats import livelink
-from engine.formats.livelink_origin import Origin
-from engine.formats.livelink_write import encode
+from engine.formats.livelink.origin import Origin
+from engine.formats.livelink.writer import encode
 from engine.lab.performer import demo
 from engine.project import Contents, Project
 from engine.take import SHAPES, Take
@@ -118,6 +118,27 @@ def test_a_newer_version_says_so(whole: bytes, tmp_path: Path) -> None:
         ("UPDATE pins SET weights = ?", '{"jawOpen": NaN}'),
         ("UPDATE pins SET weights = ?", '{"nose": 1}'),
         ("UPDATE notes SET frame = ?", 40),
+        ("UPDATE notes SET frames = ?", 0),
+        ("UPDATE notes SET frames = ?", 36),
+        ("UPDATE notes SET replies = ?", '[{"author": "a"}]'),
+        ("UPDATE notes SET replies = ?", '[{"author": 1, "time": "", "text": ""}]'),
+        ("UPDATE notes SET replies = ?", "5"),
+        ("UPDATE notes SET drawing = ?", '{"strokes": [[[0, 1, 2]]], "camera": []}'),
+        ("UPDATE notes SET drawing = ?", '{"strokes": [[["a", 1]]], "camera": []}'),
+        ("UPDATE notes SET drawing = ?", '{"strokes": [[[NaN, 1]]], "camera": []}'),
+        ("UPDATE notes SET drawing = ?", '{"strokes": [], "camera": [1]}'),
+        ("UPDATE notes SET drawing = ?", '{"strokes": 1, "camera": []}'),
+        ("UPDATE dismissals SET stop = ?", 41),
+        ("UPDATE dismissals SET weight = ?", 9e999),
+        ("UPDATE flags SET counts = ?", 2),
+        ("UPDATE flags SET threshold = ?", 9e999),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(flags={"counts": {"lost": 1}})),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(flags={"thresholds": {"open": "far"}})),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(flags={"on": {}})),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(flags={"counts": []})),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(verdicts=[{"judgement": 5}])),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(dismissals=[{"kind": "open"}])),
+        ("UPDATE edits SET kind = 'mark', inputs = ?", marked(notes=[{"frame": 0, "replies": "ab"}])),
         ("UPDATE media SET offset_s = ?", -9e999),
     ],
 )

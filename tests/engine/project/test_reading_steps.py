@@ -10,7 +10,7 @@ import pytest
 
 from engine import project
 from engine.errors import FormatError
-from engine.formats.reading import ReadAs, Reading
+from engine.formats.base.reading import ReadAs, Reading
 from engine.project import Contents, Project, replay
 from engine.project.records import reading_edit
 from engine.take import Take

@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from engine import project
 from engine.errors import EngineError
 from engine.formats import read_take, write_take
 from engine.lab.performer import demo
-from engine.project import Contents, Media, Note, Project, Span, replay, schema
+from engine.project import Contents, Media, Note, Project, Span, Verdict, marks_of, replay, schema
 from engine.take import SHAPES, runs
 from tests.engine.project.projects import MARKS, reopened, same
 
@@ -152,6 +153,64 @@ def test_a_take_in_a_file_of_the_second_version_is_written_as_it_came_and_its_fi
     again = read_take(tmp_path / "filled.csv")
     assert not again.lost.any()
     np.testing.assert_allclose(again.weights[start:stop], filled, atol=1e-10)
+
+
+# As the third version wrote it. Never to be changed either.
+THIRD_VERSION = (
+    SECOND_VERSION.replace("user_version = 2", "user_version = 3")
+    .replace("asked BLOB NOT NULL\n", "asked BLOB NOT NULL, lost BLOB\n")
+    .replace(
+        """  header TEXT NOT NULL, rows INTEGER NOT NULL, timecode_bytes INTEGER NOT NULL, timecodes BLOB NOT NULL,
+  frames BLOB NOT NULL, recorded BLOB NOT NULL, lost BLOB NOT NULL,
+  decimals INTEGER NOT NULL, newline BLOB NOT NULL, swapped INTEGER NOT NULL
+""",
+        "  rows INTEGER NOT NULL, frames BLOB NOT NULL, lost BLOB NOT NULL, swapped INTEGER NOT NULL\n",
+    )
+    + """
+CREATE TABLE origin_text (
+  place INTEGER PRIMARY KEY,
+  bytes INTEGER NOT NULL, text BLOB NOT NULL
+) STRICT;
+"""
+)
+
+
+@pytest.mark.parametrize(
+    ("told", "verdicts"),
+    [
+        ("Needs work: the jaw: it pops", (Verdict("Needs work", "the jaw: it pops"),)),
+        ("Approved", (Verdict("Approved"),)),
+        ("", ()),
+    ],
+)
+def test_notes_verdict_and_marked_steps_of_the_third_version_are_kept(
+    contents: Contents, tmp_path: Path, told: str, verdicts: tuple[Verdict, ...]
+) -> None:
+    path, take = tmp_path / "old.retake", contents.original
+    database = sqlite3.connect(path)
+    database.executescript(THIRD_VERSION)
+    blobs = [zlib.compress(array.tobytes()) for array in (take.weights, take.lost, take.rotations)]
+    database.execute("INSERT INTO take VALUES (1, 'random', 30.0, 0.0, 40, ?, ?, ?)", blobs)
+    marks = {"spans": [], "pins": [], "notes": [], "media": [], "verdict": ""}
+    note = {"frame": 5, "author": "Ana", "time": "2024-05-06T07:08:09Z", "text": "here"}
+    inputs = json.dumps({"before": marks, "after": {**marks, "notes": [note], "verdict": told}})
+    nothing = zlib.compress(b"")
+    database.execute(
+        "INSERT INTO edits VALUES (0, 'mark', 'note', ?, 0, 0, ?, '[\"lips_vertical\"]', ?, NULL)",
+        (inputs, nothing, nothing),
+    )
+    database.execute("INSERT INTO state VALUES (1, 1, ?, '2025-01-02T03:04:05Z')", (told,))
+    database.execute("INSERT INTO notes VALUES (0, 5, 'Ana', '2024-05-06T07:08:09Z', 'here')")
+    database.commit()
+    database.close()
+
+    judgement = verdicts[0] if verdicts else None
+    assert project.peek(path).verdict == judgement  # the old file is only looked at
+    found = reopened(path)
+    assert project.peek(path).verdict == judgement
+    assert found.marks == marks_of(found.edits[0].inputs["after"])
+    assert found.marks.notes == (Note(5, "Ana", "2024-05-06T07:08:09Z", "here"),)
+    assert found.marks.verdicts == verdicts and found.marks.verdict == told
 
 
 def test_each_older_version_has_a_way_to_the_next() -> None:

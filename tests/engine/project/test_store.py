@@ -17,7 +17,7 @@ from engine.controls import ALL_CONTROLS
 from engine.errors import EngineError, FormatError
 from engine.formats import livelink
 from engine.lab.performer import demo
-from engine.project import Contents, Edit, InUseError, Project
+from engine.project import Contents, Edit, InUseError, Project, Verdict
 from engine.take import SHAPES, Take
 from tests.engine.project.projects import MARKS, an_edit, reopened, same, sql
 
@@ -44,7 +44,7 @@ def test_a_walk_of_edits_undone_steps_and_marks_is_always_what_a_list_would_hold
         elif turn < 0.8:
             plain = replace(plain, position=int(rng.integers(0, len(plain.edits) + 1)))
         else:
-            plain = replace(plain, marks=replace(MARKS, verdict=f"{step}", spans=MARKS.spans[: step % 3]))
+            plain = replace(plain, marks=replace(MARKS, verdicts=(Verdict(f"{step}"),), spans=MARKS.spans[: step % 3]))
         opened.put(plain)
         if rng.random() < 0.3:
             opened.close()
@@ -158,7 +158,7 @@ def left_by_a_kill(contents: Contents, folder: Path) -> Path:
 @pytest.mark.parametrize("how", ["create", "save_as"])
 def test_a_save_over_a_killed_project_is_not_undone_by_its_log(contents: Contents, tmp_path: Path, how: str) -> None:
     path = left_by_a_kill(contents, tmp_path)
-    new = replace(contents, position=2, marks=replace(MARKS, verdict="approved"))
+    new = replace(contents, position=2, marks=replace(MARKS, verdicts=(Verdict("Approved"),)))
     if how == "create":
         project.create(path, new).close()
     else:

@@ -9,14 +9,15 @@ from scipy.spatial.transform import Rotation
 from engine.character import Character, bundled
 from engine.errors import EditError
 from engine.formats import read_take
-from engine.formats.capture import Markers
+from engine.formats.markers.capture import Markers
+from engine.jaw import drawable
 from engine.lab.performer import demo
 from engine.spacetime.align import HeadMotion
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import standard
 from engine.spacetime.matching import Matching
 from engine.spacetime.retarget import correspond, match, retarget
-from engine.spacetime.source import Source, bridge, from_markers, from_take, shown
+from engine.spacetime.source import Source, bridge, from_markers, from_take
 from engine.take import SHAPE_INDEX, Array, Take
 
 FREE = Matching(alpha=1e-7, beta=0.1, closure=0.0, bounds=None)
@@ -25,7 +26,7 @@ FREE = Matching(alpha=1e-7, beta=0.1, closure=0.0, bounds=None)
 @pytest.fixture(scope="module")
 def take() -> Take:
     whole = read_take(demo.BUNDLED)
-    return replace(whole, weights=shown(whole.weights[:150]), lost=whole.lost[:150], rotations=whole.rotations[:150])
+    return replace(whole, weights=drawable(whole.weights[:150]), lost=whole.lost[:150], rotations=whole.rotations[:150])
 
 
 @pytest.fixture(scope="module")
