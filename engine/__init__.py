@@ -4,7 +4,8 @@ What all share
     `take`, `character`, `controls` (distances on the face), `extended` (six more), `pose`, `anatomy`, `easing`, `errors`;
     `jaw` (lips close no further than it has opened), `mesh` (what hangs together), `assets` (where files of ours lie).
 What the user asks for
-    `editing` has one function per verb; it composes the methods below. `retouch` edits weights without a network,
+    `editing` is the front door: a request and a function for each verb; it composes the methods below. `patch` is what
+    an edit comes to, `retouch` edits weights without a network,
     `exact` lands on asked distances, `quality` flags frames to look at.
 Methods, none of which knows another
     `regress` (curves to a face), `inpaint` (spans), `clean` (tracker noise), `spacetime` (pins, markers and heads by

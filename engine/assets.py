@@ -22,6 +22,7 @@ def _folder() -> Path:
 
 ASSETS = _folder()
 HEAD = ASSETS / "head" / "head.npz"
+SECOND_HEAD = ASSETS / "head" / "second.npz"
 DEMO_TAKE = ASSETS / "takes" / "demo.csv"
 MODELS = ASSETS / "models"
 ICONS = ASSETS / "icons"

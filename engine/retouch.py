@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from engine.easing import ease
-from engine.editing import Patch
 from engine.errors import EditError
+from engine.patch import Patch
 from engine.take import SHAPES, Array, Mask, Take, require_frames
 
 PASTE_FEATHER_S = 0.13  # beside what is pasted; four frames at 30 fps, as long as a lip takes to open
+SMOOTH_FEATHER_S = 0.15  # within a smoothed range, at either end
 LOWEST_HZ = 0.001
 ORDER = 2  # filtered once in each direction, so the slope is that of order 4 and nothing shifts in time
 
@@ -63,12 +63,14 @@ def paste(take: Take, start: int, weights: Array, *, feather_s: float = PASTE_FE
     return _patch(take, first, rows, found=found)
 
 
-def smooth(take: Take, frames: tuple[int, int], cutoff_hz: float, *, feather_s: float = 0.15) -> Patch:
+def smooth(take: Take, frames: tuple[int, int], cutoff_hz: float, *, feather_s: float = SMOOTH_FEATHER_S) -> Patch:
     """Low-pass all weights over a range of frames with a Butterworth filter of zero phase, its ends feathered.
 
     The filter runs over the take around the range, so that the range's ends need no guess of what lies beyond.
     Raises `EditError` for a cutoff that is not between 0 and half the frame rate.
     """
+    from scipy.signal import butter, sosfiltfilt  # here: asking for a paste needs no filters
+
     start, stop = frames
     require_frames(take, start, stop)
     if not LOWEST_HZ <= cutoff_hz < take.fps / 2:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
@@ -13,17 +12,14 @@ from app.inspector.value import closes
 from app.session import Session
 from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
-from app.session.inference import Inference
-from app.session.view import DEFAULT_BELIEVABILITY
+from app.session.edits import Editing
 from app.spans.filling import Filling
 from engine.controls import CONTROLS
+from engine.editing import DEFAULT_BELIEVABILITY, PasteRequest, SmoothRequest
 from engine.errors import EngineError
 from engine.project.records import FILL
 from engine.take import Array
 from engine.words import counted
-
-if TYPE_CHECKING:
-    from engine.editing import Dragger, Patch
 
 EASE_S = 0.16  # beside a selection that is set to a value
 CLOSE_S, OPEN_S = 0.08, 0.14  # of a blink: lids fall faster than they rise
@@ -40,7 +36,7 @@ class EditActions(QObject):
 
     told = Signal(str)  # a short remark for the status bar
 
-    def __init__(self, session: Session, inference: Inference, curves: CurvesPanel, filling: Filling) -> None:
+    def __init__(self, session: Session, inference: Editing, curves: CurvesPanel, filling: Filling) -> None:
         super().__init__()
         self._session, self._inference, self._curves, self._filling = session, inference, curves, filling
         self._copied: Array | None = None
@@ -142,31 +138,19 @@ class EditActions(QObject):
         copied, start = self._copied, self._session.view.playhead
         if copied is None or self._inference.busy:
             return
-
-        def verb(dragger: Dragger) -> Patch:
-            from engine.retouch import paste
-
-            return paste(dragger.take, start, copied)
-
-        self._inference.run(verb)
+        self._inference.run(PasteRequest(start, copied))
         self._inference.finish(f"paste {counted(len(copied), 'frame')}", kind="paste", inputs={"start": start})
 
     def preview_smoothing(self, cutoff_hz: float) -> None:
         """Show what a Butterworth filter does to the selection, or the whole take."""
         frames = self._session.view.selection or (0, len(self._session.document.take))
-
-        def verb(dragger: Dragger) -> Patch:
-            from engine.retouch import smooth
-
-            return smooth(dragger.take, frames, cutoff_hz)
-
-        self._inference.run(verb)
+        self._inference.run(SmoothRequest(frames, cutoff_hz))
 
     def smooth(self) -> None:
         """Smooth at the cutoff that the inspector shows."""
         cutoff_hz = self.cutoff_hz()
         self.preview_smoothing(cutoff_hz)
-        self._inference.finish(f"smooth at {cutoff_hz:g} Hz", kind="smooth", inputs={"cutoff_hz": cutoff_hz})
+        self._inference.finish(f"smooth at {cutoff_hz:g} Hz", kind="smooth")
 
     def accept(self) -> None:
         """Keep the fill that is shown."""

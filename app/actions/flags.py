@@ -28,7 +28,7 @@ class FlagActions(QObject):
         super().__init__()
         self._session, self._flags, self._window = session, flags, window
         self.dialog: FlagsDialog | None = None
-        flags.wanted.connect(lambda name: getattr(self, name)())
+        flags.wanted.connect(self._carry_out)
         session.changed.connect(self._on_change)
 
     def dismiss_flag(self) -> None:
@@ -47,6 +47,9 @@ class FlagActions(QObject):
         self.dialog.show_settings(self._session.document.marks.flags)
         self.dialog.show()
         self.dialog.raise_()
+
+    def _carry_out(self, name: str) -> None:
+        getattr(self, name)()
 
     def _set(self, settings: FlagSettings, title: str) -> None:
         document = self._session.document

@@ -128,6 +128,8 @@ ACTIONS: tuple[Action, ...] = (
     Action("approve", "Approve", "Review", ("Ctrl+Shift+A",), twin="a verdict belongs to a project"),
     Action("send_back", "Needs work…", "Review", ("Ctrl+Shift+W",), twin="a verdict belongs to a project"),
     Action("write_report", "Write a report…", "Review", ("Ctrl+Shift+E",), twin="retake review -o REPORT.html"),
+    Action("write_movie", "Write a movie side by side…", "Review", twin="retake render --before-edits --burn-in"),
+    Action("write_findings", "Write flags and notes…", "Review", twin="retake review --findings --markers"),
     Action("expand_lane", "Show or hide the weights below", "View", ("W",)),
     Action("play", "Play or pause", "Playback", ("Space", "K"), "▶", True, twin="retake render -o OUT.mp4"),
     Action("play_backwards", "Play backwards", "Playback", ("J",)),

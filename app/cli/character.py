@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from app.cli.performance import Carried
     from engine.character import Character
     from engine.formats.characters.assemble import Import
-    from engine.formats.characters.moving import MovingMesh
 
 Names = Annotated[
     list[str] | None, typer.Option("--name", help="Correct a match: the file's name=ARKit shape, or name=.")
@@ -139,6 +138,7 @@ def drive(
     sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Move a head that needs no shapes by points on its face; the head turns and goes as the markers do."""
+    from engine import editing
     from engine.formats.characters.animation import require_ending, write
 
     require_ending(out)
@@ -147,33 +147,12 @@ def drive(
         markers, neutral=neutral, fps=fps, sides=sides, marker=marker, placed=points is not None
     )
     performance.show()
-    moving, followed = _moved(head, performance, points, still=still)
+    followed = _followed(head, performance, points)
+    moving = editing.drive(performance.performance, editing.DriveRequest(head, followed, still=still))
     write(moving, out)
-    moved = f"{counted(len(moving.rest), 'vertex', 'vertices')} by {counted(followed, 'point')}"
+    shared = sum(name in performance.performance.source.names for name in followed)
+    moved = f"{counted(len(moving.rest), 'vertex', 'vertices')} by {counted(shared, 'point')}"
     say(f"Moved {moved} over {counted(len(moving.frames), 'frame')}. Written to {out}.")
-
-
-def _moved(head: Character, performance: Carried, points: Path | None, *, still: bool) -> tuple[MovingMesh, int]:
-    """Return a head moved by the markers of its points, and how many points those are."""
-    import numpy as np
-
-    from engine.formats.characters.moving import MovingMesh
-    from engine.manifold.drive import MeshDriver, aim
-
-    source, followed = performance.source, _followed(head, performance, points)
-    shared = [name for name in followed if name in source.names]
-    if len(shared) < 4:
-        raise EditError(f"Only {len(shared)} of the mesh's points have a marker of their name.", "Name them alike.")
-    columns = [source.names.index(name) for name in shared]
-    rest = head.neutral.astype(np.float64)
-    driver = MeshDriver(rest, head.triangles, np.array([followed[name] for name in shared]))
-    aimed, laid = aim(rest[driver.points], source.neutral[columns], source.displacements[:, columns])
-    if source.head is not None and not still:
-        motion = source.head.seen_along(laid.turn[0], scale=float(laid.scale[0]), shift=laid.shift[0])
-        aimed = motion.apply(aimed)
-    posed = (head.as_in_file(frame.astype(np.float32)) for frame in driver.frames(aimed))
-    moving = MovingMesh(head.as_in_file(rest), head.triangles_in_file, np.stack(list(posed)), source.take.fps)
-    return moving, len(shared)
 
 
 def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None) -> Character:
@@ -186,13 +165,12 @@ def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None)
 
 def _followed(head: Character, performance: Carried, points: Path | None) -> dict[str, int]:
     """Return which vertex of a head follows which marker, by a file or by what the markers were taken for."""
+    from engine import editing
     from engine.formats.markers import layout as markers_layout
-    from engine.spacetime.layout import standard
 
     if points is not None:
         return markers_layout.read(points, head=head)
-    layout = performance.layout(head) or standard(head)
-    return dict(zip(layout.names, (int(vertex) for vertex in layout.vertices), strict=True))
+    return performance.places(head) or editing.standard_places(head)
 
 
 def register(app: typer.Typer) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
@@ -57,9 +58,8 @@ def fill(
     write_sides: WrittenSides = SAME,
 ) -> None:
     """Fill a span with believable motion, steered by as much or as little as is given."""
+    from engine import editing
     from engine.formats.cues import read_cues
-    from engine.inpaint.fill import fill_spans
-    from engine.inpaint.request import Request, Style, merged_pins
     from engine.speech.visemes import begun_at
 
     format_of(out)  # better refused now than after the work
@@ -67,30 +67,32 @@ def fill(
         raise EditError("Say what to fill.", "Give --frames A:B, or --lost for every lost run.")
     opened = open_take(take, fps, sides)
     spans = _spans(opened, frames or [], lost=lost)
-    request = Request(
+    steering = editing.FillRequest(
         frames=spans[0],
         region=region,
-        pins=merged_pins([_pin(text) for text in pin or []]),
+        pins=editing.merged_pins([_pin(text) for text in pin or []]),
         guide=read_take(guide) if guide else None,
         guide_offset=guide_offset,
         visemes=begun_at(read_cues(visemes, remark), visemes_offset) if visemes else (),
         controls=_controls(control or [], spans),
-        style=cast(Style, style),  # checked with the rest
+        style=cast(editing.Style, style),  # checked with the rest
         lost=lost,
     )
-    filled = [fill_spans(opened, spans, request, seed=seed + index) for index in range(variants)]
-    for index, one in enumerate(filled):
+    filled = [
+        editing.fill_spans(opened, editing.SpansRequest(tuple(spans), replace(steering, seed=seed + index)))
+        for index in range(variants)
+    ]
+    for index, patch in enumerate(filled):
         path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
-        save_take(one, path, write_sides)
+        save_take(patch.apply(opened), path, write_sides)
         say(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
 
 
 def _spans(take: Take, frames: list[str], *, lost: bool) -> list[tuple[int, int]]:
     """Return what is to be filled: the named frames, or every lost run; raises `EditError` where that is nothing."""
-    from engine.editing import parse_frames
-    from engine.inpaint.fill import lost_spans
+    from engine.editing import lost_spans, parse_frames
 
-    spans = lost_spans(take) if lost else [parse_frames(text, take) for text in frames]
+    spans = list(lost_spans(take)) if lost else [parse_frames(text, take) for text in frames]
     if not spans:
         raise EditError(f"{take.name} has no lost frames.", "Give --frames A:B to fill something else.")
     return spans

@@ -18,7 +18,7 @@ from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.character import Character
-    from engine.spacetime.matching import Matching
+    from engine.editing import Matching
     from engine.take import Take
 
 STRONGEST = 1e12  # beyond this the system cannot be solved
@@ -49,10 +49,7 @@ def pin(
     write_sides: WrittenSides = SAME,
 ) -> None:
     """Pin a pose at a frame and let it spread over a range."""
-    from dataclasses import replace
-
-    from engine.editing import parse_frames
-    from engine.spacetime import pin as pins
+    from engine import editing
     from engine.take import SHAPES
 
     source = open_take(take, fps, sides)
@@ -60,15 +57,14 @@ def pin(
     if controls:
         if free:
             raise EditError("A control pins the whole pose.", "Leave out --free, or pin weights instead.")
-        pose = pins.pose_reaching(source, frame, assignments(controls))
+        pose = editing.pose_reaching(source, frame, assignments(controls))
         named = {**dict(zip(SHAPES, pose.tolist(), strict=True)), **named}
     if not named:
         raise EditError("The pin has no pose.", "Name weights with --weights or controls with --control.")
-    spreading = (
-        pins.Spreading() if closure is None else replace(pins.Spreading(), closure=_strength("closure", closure))
-    )
-    edited = pins.pin(source, {frame: named}, parse_frames(frames, source), whole=not free, spreading=spreading)
-    save_take(edited, out, write_sides)
+    held = None if closure is None else _strength("closure", closure)
+    chosen = editing.parse_frames(frames, source)
+    asked = editing.PinRequest({frame: named}, chosen, whole=not free, closure=held)
+    save_take(editing.pin(source, asked).apply(source), out, write_sides)
     say(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
 
 
@@ -101,7 +97,7 @@ def retarget(
         source, neutral=neutral, unit=unit, fps=fps, sides=sides, marker=marker, placed=landmarks is not None
     )
     if suggest is not None:
-        say("\n".join(map(str, labelled.suggest(performance.source, suggest, labels))))
+        say("\n".join(map(str, labelled.suggest(performance.performance, suggest, labels))))
         return
     assert out is not None
     performance.show()
@@ -129,7 +125,7 @@ def _require_sense(method: Method, *, labelled: bool, out: Path | None, suggests
 
 
 def _matching(*, alpha: float | None, beta: float | None, closure: float | None, unbounded: bool) -> Matching:
-    from engine.spacetime.matching import Matching
+    from engine.editing import Matching
 
     usual = Matching()
     return Matching(
@@ -143,16 +139,15 @@ def _matching(*, alpha: float | None, beta: float | None, closure: float | None,
 def _carried(
     performance: Carried, character: Path | None, landmarks: Path | None, matching: Matching
 ) -> tuple[Take, Character]:
+    from engine import editing
     from engine.character import bundled
     from engine.formats.characters.opening import character_of
     from engine.formats.markers import layout as markers_layout
-    from engine.spacetime.layout import named
-    from engine.spacetime.retarget import retarget as carry
 
     target = bundled() if character is None else character_of(character)
-    given = named(markers_layout.read(landmarks, head=target)) if landmarks is not None else None
-    layout = given or performance.layout(target)
-    return carry(performance.source, target, layout=layout, matching=matching), target
+    given = markers_layout.read(landmarks, head=target) if landmarks is not None else None
+    places = performance.places(target) if given is None else given
+    return editing.retarget(performance.performance, editing.RetargetRequest(target, places, matching)).take, target
 
 
 def assignments(text: str) -> dict[str, float]:

@@ -24,7 +24,7 @@ from app.curves.stack import LaneStack
 from app.curves.tools import make_tools
 from app.curves.tools.base import Tool
 from app.session import Change, Session
-from app.session.inference import Inference
+from app.session.edits import Editing
 from app.theme import Palette
 from app.widgets.text import Label
 
@@ -47,7 +47,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
 
     menu_wanted = Signal(str, QPoint)  # curve, lane, or here for all that is at the playhead; where on the screen
 
-    def __init__(self, session: Session, inference: Inference, colours: Palette) -> None:
+    def __init__(self, session: Session, inference: Editing, colours: Palette) -> None:
         super().__init__()
         self.session, self.inference = session, inference
         self.setAntialiasing(True)

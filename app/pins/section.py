@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QLineEdit, QPushButton, QSlider
 
 from app.session import Change, Session
-from app.session.inference import Inference
+from app.session.edits import Editing
 from app.widgets.section import CountBox, Section, quiet
 from app.widgets.weight_sliders import WeightSliders
+from engine.editing import PinRequest
 from engine.project import Pin
-
-if TYPE_CHECKING:
-    from engine.editing import Dragger, Patch
-    from engine.spacetime.pin import PinSolver
 
 SPREAD_S = 0.5
 
@@ -33,13 +29,11 @@ class PinsSection(Section):
 
     tools = frozenset({"pin"})
 
-    def __init__(self, session: Session, inference: Inference) -> None:
+    def __init__(self, session: Session, inference: Editing) -> None:
         super().__init__(session, "Pin")
         self._inference = inference
         self._frame = 0
         self._pose: dict[str, float] = {}  # the weights that were moved
-        self._solver: PinSolver | None = None
-        self._solver_for: tuple[object, ...] = ()
         self.hint = quiet("Move a slider: the pose is met at the playhead and eases out over the range.")
         self.column.addWidget(self.hint)
         self.before, self.after = (CountBox("frame", lowest=0, highest=5000) for _ in range(2))
@@ -130,15 +124,4 @@ class PinsSection(Section):
     def _spread(self, *_: int) -> None:
         if not self._pose:
             return
-        frame, frames, pose = self._frame, self.range, dict(self._pose)
-
-        def verb(dragger: Dragger) -> Patch:
-            from engine.editing import Patch
-            from engine.spacetime.pin import PinSolver
-
-            wanted = (dragger.take, frame, frames)
-            if self._solver is None or self._solver_for != wanted:
-                self._solver, self._solver_for = PinSolver(dragger.take, {frame: pose}, frames), wanted
-            return Patch.between(dragger.take, self._solver.take({frame: pose}), frames)
-
-        self._inference.run(verb)
+        self._inference.run(PinRequest({self._frame: dict(self._pose)}, self.range))

@@ -19,7 +19,7 @@ from app.preview.picking import vertex_under
 from app.preview.renderer import Picture, Shot
 from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
-from app.session.inference import Inference
+from app.session.edits import Editing
 from app.session.sides import Side
 from app.theme import GRID
 from app.widgets.text import Label
@@ -54,7 +54,7 @@ class PreviewPanel(QFrame):
     dot_clicked = Signal(str)  # name of a marker
     view_changed = Signal(str)  # one of VIEWS
 
-    def __init__(self, session: Session, inference: Inference) -> None:
+    def __init__(self, session: Session, inference: Editing) -> None:
         super().__init__()
         self.setProperty("panel", True)
         self._session, self._inference = session, inference

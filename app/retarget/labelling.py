@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from app.retarget.carry import Pose, points_of
-from app.retarget.retargeting import LABELS, Retargeting
+from app.retarget.carry import Pose
+from app.retarget.retargeting import Retargeting
+from app.retarget.solving import LABELS
 from app.session import Session
+from engine.editing import suggest_frames
 from engine.errors import EditError
 from engine.formats import labels as files
 from engine.formats.labels import LabelFile
@@ -64,12 +66,7 @@ class Labelling:
         state = self._retargeting
         performance, labelled = state.performance, sorted(state.target.labels)
 
-        def work() -> list[int]:
-            from engine.manifold.retarget import suggest_frames
-
-            return suggest_frames(points_of(performance), count, labelled=labelled)
-
-        state.submit(work, state.propose)
+        state.submit(lambda: suggest_frames(performance, count, labelled), state.propose)
 
     def read(self, path: Path) -> None:
         """Read labels, and open the head that they are for where the file names one; raises `EngineError`."""
@@ -100,6 +97,6 @@ class Labelling:
 
     def _change(self, labels: Mapping[int, Pose], title: str) -> None:
         state = self._retargeting
-        result = state.result
+        solved = state.result, state.solved
         state.change_target(replace(state.target, labels=labels), title)
-        state.show(result)  # it is what the next label is posed from
+        state.show(*solved)  # it is what the next label is posed from

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from app.retarget.carry import Carried, Carrier, Carry, Performance, Target
-from engine.spacetime.matching import Matching
+from app.retarget.carry import Target
+from app.retarget.solving import KIND
+from app.session.asked import Asked
+from app.session.edits import Runner
+from engine.editing import Matching, Performance, Retargeted
 from engine.take import Array
 
 BEFORE_FRAMES, AFTER_FRAMES = 8, 24  # of the playhead, that are carried: playing goes on while more is made
 AHEAD_FRAMES = 12  # how near the end of what is known the playhead may come before more is asked for
-
-Submit = Callable[[Callable[[], Any], Callable[[Any], None]], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,19 +31,19 @@ class LiveFrames:
 
     Parameters
     ----------
-    submit : has work done off the GUI thread and hands on what it returns
+    runner : carries what is asked out, off the GUI thread
     wanted : tells whether what was carried is still to be seen
     drawn : is called when other frames are there
     """
 
-    def __init__(self, submit: Submit, wanted: Callable[[Carry], bool], drawn: Callable[[], None]) -> None:
-        self._submit, self._wanted, self._drawn = submit, wanted, drawn
-        self._carrier = Carrier()
+    def __init__(self, runner: Runner, wanted: Callable[[Asked], bool], drawn: Callable[[], None]) -> None:
+        self._runner, self._wanted, self._drawn = runner, wanted, drawn
+        runner.arrived.connect(self._show)
         self.forget()
 
     def forget(self) -> None:
         """Know no frame: another performance is carried."""
-        self._known: Carried | None = None
+        self._known: Retargeted | None = None
         self._asked = _Asked()
 
     def ask_anew(self) -> None:
@@ -66,14 +66,9 @@ class LiveFrames:
             return
         span = (max(0, playhead - BEFORE_FRAMES), min(frames, playhead + AFTER_FRAMES + 1))
         self._asked = _Asked(wish, span)
-        carry = Carry(performance, target, matching, span)
-        self._submit(lambda: self._carrier(carry, _nobody), lambda came: self._show(carry, came))
+        self._runner.ask(Asked(KIND, target.request(matching, span), performance))
 
-    def _show(self, carry: Carry, came: Carried) -> None:
-        if self._wanted(carry):
+    def _show(self, asked: Asked, came: Retargeted) -> None:
+        if self._wanted(asked):
             self._known = came
             self._drawn()
-
-
-def _nobody(_: float) -> None:
-    pass

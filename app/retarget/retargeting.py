@@ -10,33 +10,21 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.retarget.carry import (
-    Carried,
-    Carrier,
-    Carry,
-    Errand,
-    Performance,
-    Stopped,
-    Target,
-    posed,
-)
+from app.retarget.carry import Errand, Target, posed
 from app.retarget.choosing import Choosing
 from app.retarget.commands import TargetCommand
 from app.retarget.kept import KeptHeads
 from app.retarget.live import LiveFrames
+from app.retarget.solving import KIND, LABELS, MOVEMENT, carry_out, whole
 from app.session import Change, Session
-from app.session.commands import EditCommand
+from app.session.asked import Asked
+from app.session.edits import Runner
 from engine.character import bundled
-from engine.spacetime.layout import MARKERS
-from engine.spacetime.matching import Matching
+from engine.editing import MARKERS, Matching, Performance, Retargeted
 from engine.take import SHAPES, Array
 
 if TYPE_CHECKING:
-    from engine.editing import Patch
-    from engine.spacetime.source import Source
-
-MOVEMENT, LABELS = "movement", "labels"
-KIND = "retarget"  # of the edits that put a take on another head
+    from engine.editing import Patch, Source
 
 
 class Retargeting(QObject):
@@ -69,21 +57,25 @@ class Retargeting(QObject):
         self._session = session
         self.target, self.capture = Target(), None
         self.method, self.matching = MOVEMENT, Matching()
-        self.result: Carried | None = None
+        self.result: Retargeted | None = None
+        self.solved: Asked | None = None
         self.share: float | None = None
         self.draft_pose: dict[str, float] = {}
         self.suggestions: list[int] = []
         self._performance: Performance | None = None
-        self._solving: Carry | None = None
-        self._carrier = Carrier()
-        self._whole, self._short = (LatestWins(_run, name=name) for name in ("retarget", "retarget live"))
+        self._solver = Runner(session, carry_out, name="retarget")
+        self._solver.arrived.connect(self._finish)
+        self._solver.progress.connect(self._advance)
+        self._solver.failed.connect(self._solve_refused)
+        self._nearby = Runner(session, carry_out, name="retarget live")
+        self._nearby.failed.connect(self.failed)
+        self._whole, self._short = (LatestWins(_run, name=name) for name in ("heads", "shown heads"))
         for thread in (self._whole, self._short):
             thread.done.connect(self._deliver)
         self._whole.failed.connect(self._refused)
         self._short.failed.connect(self._short_refused)
-        self.progress.connect(self._advance)
         self.choosing = Choosing(session, self)
-        self._live = LiveFrames(self.submit_short, self._to_be_seen, self.drawn.emit)
+        self._live = LiveFrames(self._nearby, self._to_be_seen, self.drawn.emit)
         self._kept_heads = KeptHeads(session, self.submit, self._follow)
         session.changed.connect(self._on_change)
         session.document.undo.indexChanged.connect(self._follow)
@@ -116,7 +108,7 @@ class Retargeting(QObject):
     @property
     def idle(self) -> bool:
         """Whether nothing is being worked out."""
-        return self._whole.idle and self._short.idle
+        return all(each.idle for each in (self._solver, self._nearby, self._whole, self._short))
 
     def face_at(self, frame: int) -> Array | None:
         """Return the weights of the target at a frame, (52,), as far as they are known."""
@@ -181,8 +173,8 @@ class Retargeting(QObject):
         if self.method != LABELS or self.capture is not None:
             self._live.ask(self.performance, self.target, self.matching, playhead=view.playhead)
 
-    def _to_be_seen(self, carried: Carry) -> bool:
-        return carried.performance is self._performance and carried.target.head is self.target.head
+    def _to_be_seen(self, asked: Asked) -> bool:
+        return asked.of is self._performance and getattr(asked.inputs, "head", None) is self.target.head
 
     def solve(self) -> None:
         """Carry the whole take."""
@@ -193,76 +185,52 @@ class Retargeting(QObject):
             self.failed.emit("No frame is labelled yet.", "Suggest frames, pose the target at each, and label it.")
             return
         self.cancel()
-        wish = Carry(self.performance, self.target, self.matching, from_labels=self.method == LABELS)
-        self._solving, self.share = wish, 0.0
-        self.submit(lambda: self._stoppable(wish), lambda made: self._finish(wish, made))
+        self.share = 0.0
+        self._solver.ask(whole(self.performance, self.target, self.matching, self.method))
         self.changed.emit()
 
-    def _stoppable(self, wish: Carry) -> Carried | None:
-        try:
-            return self._carrier(wish, self.progress.emit)
-        except Stopped:
-            return None
-
-    def _finish(self, wish: Carry, made: Carried | None) -> None:
-        if wish is self._solving:
-            self._solving, self.share, self.result = None, None, made
+    def _finish(self, asked: Asked, found: Retargeted) -> None:
+        if self._solver.is_last(asked):
+            self._solver.drop()
+            self.share, self.result, self.solved = None, found, asked
             self.changed.emit()
 
     def _advance(self, share: float) -> None:
-        if self._solving is not None:
+        if self._solver.last is not None:
             self.share = share
+            self.progress.emit(share)
 
     def cancel(self) -> bool:
         """Stop the solve under way; returns whether there was one."""
-        if self._solving is None:
+        if self._solver.last is None:
             return False
-        self._solving.stop.set()
-        self._solving = self.share = None
+        self._solver.drop()
+        self.share = None
         self.changed.emit()
         return True
 
     def keep(self) -> None:
         """Make what was carried the take, on its head, as one undo step."""
-        result, target = self.result, self.target
-        if result is None or target.head is None:
+        result, head, take = self.result, self.target.head, self._session.document.take
+        if result is None or head is None:
             return
-        session, head = self._session, target.head
-        take = session.document.take
-        inputs = {
-            "target": str(target.path or ""),
-            "source": self.capture.take.name if self.capture else take.name,
-            "method": self.method,
-            "labels": {str(frame): dict(pose) for frame, pose in target.labels.items()},
-            "places": dict(target.places),
-            "reading": target.reading.stored(),
-            "alpha": self.matching.alpha,
-            "beta": self.matching.beta,
-            "closure": self.matching.closure,
-        }
-
-        def work() -> Patch:
-            from engine.editing import Patch
-
-            return Patch.between(take, take.with_weights(result.take.weights), (0, len(take)))
+        asked = self.solved or whole(self.performance, self.target, self.matching, self.method)
 
         def then(patch: Patch) -> None:
-            if session.document.take is take:
-                self._kept_heads.know(inputs, None if head is bundled() else head)
-                session.document.undo.push(
-                    EditCommand.of(session.document, patch, f"carry to {head.name}", kind=KIND, inputs=inputs)
-                )
+            if self._session.document.take is take:
+                self._kept_heads.know(asked.stored, None if head is bundled() else head)
+                self._solver.keep(asked, patch)
 
-        self.submit(work, then)
+        self.submit(lambda: result.patch(take), then)
 
-    def show(self, result: Carried | None) -> None:
+    def show(self, result: Retargeted | None, solved: Asked | None = None) -> None:
         """Show what was carried before, or nothing."""
-        self.result = result
+        self.result, self.solved = result, solved
         self.changed.emit()
 
     def drop(self) -> None:
         """Keep nothing of what was carried."""
-        self.result = None
+        self.result = self.solved = None
         self._live.ask_anew()
         self.ask_live()
         self.changed.emit()
@@ -271,16 +239,17 @@ class Retargeting(QObject):
         """Stop what is under way and end the threads."""
         # clearing itself at its end, it would still tell us
         self._session.document.undo.indexChanged.disconnect(self._follow)
-        self.cancel()
-        self._whole.stop()
-        self._short.stop()
+        for part in (self._solver, self._nearby):
+            part.close()
+        for thread in (self._whole, self._short):
+            thread.stop()
 
     # --- within
 
     def _begin_anew(self) -> None:
         """Forget what another source, target or setting came to."""
         self.cancel()
-        self.result, self.draft_pose = None, {}
+        self.result, self.solved, self.draft_pose = None, None, {}
         self.ask_live()
         self.changed.emit()
 
@@ -298,7 +267,11 @@ class Retargeting(QObject):
 
     def _refused(self, request: object, sentence: str, advice: str) -> None:
         self.choosing.give_up()
-        self._solving = self.share = None
+        self.failed.emit(sentence, advice)
+        self.changed.emit()
+
+    def _solve_refused(self, sentence: str, advice: str) -> None:
+        self.share = None
         self.failed.emit(sentence, advice)
         self.changed.emit()
 

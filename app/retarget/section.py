@@ -7,7 +7,8 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QProgressBar, QPushButton,
 
 from app.retarget.labelling import Labelling
 from app.retarget.labels import LabelsBox
-from app.retarget.retargeting import LABELS, MOVEMENT, Retargeting
+from app.retarget.retargeting import Retargeting
+from app.retarget.solving import LABELS, MOVEMENT
 from app.retarget.strengths import StrengthSliders
 from app.session import Session
 from app.widgets.section import Section, quiet

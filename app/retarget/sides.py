@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.retarget.carry import Target
-from app.retarget.retargeting import LABELS, Retargeting
+from app.retarget.retargeting import Retargeting
+from app.retarget.solving import LABELS
 from app.session import Session
 from app.session.sides import Dot, Side
 from engine.character import Character, bundled
+from engine.editing import standard_places
 from engine.errors import EditError
-from engine.spacetime.layout import standard
 from engine.take import Array
 from engine.words import counted
 
 if TYPE_CHECKING:
-    from engine.spacetime.source import Source
+    from engine.editing import Source
 
 MARGIN = 0.25  # of a capture's extent, around it
 
@@ -84,7 +85,6 @@ def _box(points: Array) -> tuple[Array, Array]:
 @lru_cache(maxsize=4)
 def _standard(head: Character) -> tuple[tuple[str, int], ...]:
     try:
-        layout = standard(head)
+        return tuple(standard_places(head).items())
     except EditError:
         return ()
-    return tuple(zip(layout.names, layout.vertices.tolist(), strict=True))

@@ -10,9 +10,10 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from app.playback.transport import Transport
 from app.review.comparing import Comparing
+from app.review.handing_on import HandingOnSection
 from app.review.queue_section import QueueSection
 from app.review.queueing import Queueing
-from app.review.reporting import Reporting
+from app.review.reporting import Arguments, Reporting, findings, movie, report
 from app.review.section import ReviewSection
 from app.review.verdict import APPROVED, VerdictSection
 from app.session import Change, Session
@@ -51,10 +52,11 @@ class ReviewActions(QObject):
         self.comparing.aligned.connect(self._align)
         for moved in (self.comparing.failed, self.comparing.stepped):
             moved.connect(self._show_alignment)
+        self.handing_on = HandingOnSection(session, self.reporting)
         self.reporting.written.connect(self._tell_written)
         for part in (self.comparing, self.queueing, self.reporting):
             part.failed.connect(self.failed)
-        for section in (self.section, self.verdict, self.queue):
+        for section in (self.section, self.verdict, self.queue, self.handing_on):
             section.wanted.connect(self._carry_out)
         self.section.moved.connect(self.comparing.shift)
         # What opens a take or a project in place of what is open, once that is safe; the window says how.
@@ -71,7 +73,7 @@ class ReviewActions(QObject):
         self.reporting.close()
 
     def _tell_written(self, path: Path) -> None:
-        self.told.emit(f"The report is in {path.name}.")
+        self.told.emit(f"{path.name} is written.")
 
     def _carry_out(self, name: str) -> None:
         getattr(self, name)()
@@ -151,11 +153,27 @@ class ReviewActions(QObject):
 
     def write_report(self) -> None:
         """Choose a file and write what was changed as a page to read anywhere."""
-        suggested = beside(self._session.document.path, f"{Path(self._session.document.name).stem}_review.html")
-        path, _ = ask_where(self._window, "Write a report", suggested, {"Report (*.html)": ".html"})
+        self._write("Write a report", "review.html", {"Report (*.html)": ".html"}, report)
+
+    def write_movie(self) -> None:
+        """Choose a file and write the take before and after its edits, side by side, with sound, timecode and notes."""
+        document = self._session.document
+        audio = document.audio
+        sound = None if audio is None or audio.path is None else (audio.path, document.offset_s("audio"))
+        self._write("Write a movie", "review.mp4", {"Movie (*.mp4)": ".mp4"}, movie(sound))
+
+    def write_findings(self) -> None:
+        """Choose a file and write flags and notes as a table, as JSON, or as markers for editors."""
+        kinds = {"Table (*.csv)": ".csv", "JSON (*.json)": ".json", "Markers for editors (*.edl)": ".edl"}
+        self._write("Write flags and notes", "notes.csv", kinds, findings)
+
+    def _write(self, title: str, ending: str, kinds: dict[str, str], arguments: Arguments) -> None:
+        document = self._session.document
+        suggested = beside(document.path, f"{Path(document.name).stem}_{ending}")
+        path, _ = ask_where(self._window, title, suggested, kinds)
         if path is not None:
-            self.told.emit("Writing the report…")
-            self.reporting.write(self._session.document.contents(), self._session.document.name, path)
+            self.told.emit(f"Writing {path.name}…")
+            self.reporting.write(document.contents(), document.name, path, arguments)
 
     # --- within
 

@@ -9,10 +9,10 @@ from app.session.changes import Change
 from app.session.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from app.session.document import Document
 from engine.controls import CONTROLS
+from engine.editing import DEFAULT_BELIEVABILITY
 
 FIRST_VIEW_S = 16.0
 LEAST_FRAMES = 8.0  # on screen
-DEFAULT_BELIEVABILITY = 0.5  # as in engine.regress.plausibility, which takes torch to load
 BRUSH_S, RADII_S = 0.5, (0.01, 10.0)  # of the brush: at first, and from a single frame to a whole phrase
 
 

@@ -24,9 +24,9 @@ from app.spans.filling import Filling
 from app.spans.strip import Strip
 from app.widgets.section import CountBox, Section, empty, quiet
 from app.widgets.text import caption
+from engine.editing import FillRequest, Style
 from engine.errors import EngineError
 from engine.formats import read_take
-from engine.inpaint.request import Style
 from engine.project import Span
 from engine.take import Take, timecode
 from engine.words import counted
@@ -177,12 +177,15 @@ class SpansSection(Section):
         if span is None:
             self.refused.emit("No span is chosen.", "Click one in the spans lane, or drag there to mark one.")
             return
-        style = STYLES[self.style_box.currentText()]
-        self._filling.start(
-            span,
-            style=style,
+        how = FillRequest(
+            (span.start, span.stop),
+            style=STYLES[self.style_box.currentText()],
             guide=self._guide,
             guide_offset=self.guide_shift.value(),
+        )
+        self._filling.start(
+            span,
+            how,
             keep_curves=self.curves.isChecked(),
             keep_visemes=self.visemes.isChecked(),
         )

@@ -40,8 +40,8 @@ from app.preview.reference import ReferencePanel
 from app.retarget.actions import RetargetActions
 from app.review.actions import ReviewActions
 from app.session import Session
+from app.session.edits import Editing
 from app.session.flagging import Flagging
-from app.session.inference import Inference
 from app.session.keeper import Keeper
 from app.settings import Settings
 from app.spans.filling import Filling
@@ -70,7 +70,7 @@ class WindowParts(QMainWindow):
         self.colours = theme.palette(self.settings.theme)
         self.session = Session(take)
         self.keeper = Keeper(self.session, unsaved)
-        self.inference = Inference(self.session)
+        self.inference = Editing(self.session)
         self.transport = Transport(self.session)
         self.media = Media(self.session, self.transport, settings=self.settings)
         self._make_panels()
@@ -113,8 +113,8 @@ class WindowParts(QMainWindow):
         review = self.review
         sections = (
             *(self.brush, self.value, self.pins, self.clean, self.live, *self.retarget.sections),
-            *(self.smoothing, self.spans, review.queue, review.section, self.facts, self.flags, self.notes),
-            *(review.verdict, self.attached),
+            *(self.smoothing, self.spans, review.queue, review.section, review.handing_on),
+            *(self.facts, self.flags, self.notes, review.verdict, self.attached),
         )
         self.inspector = Inspector(session, sections)
 

@@ -22,6 +22,7 @@ __all__ = [
     "MISSED_MM",
     "TABLE",
     "TUNING",
+    "USUAL",
     "Dismissal",
     "Flag",
     "FlagSettings",

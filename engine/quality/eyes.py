@@ -26,7 +26,9 @@ def unclosed(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     blinks = np.flatnonzero((drop > seen.tuning.blink_drop_mm) & seen.kept)
     usual = float(np.median(gap[blinks])) if len(blinks) else 0.0
     found = np.zeros(seen.length)
-    open_ = blinks[_level(seen, blinks) & (gap[blinks] > max(seen.tuning.unclosed_mm, usual + seen.tuning.unlike_mm))]
+    most = drop[blinks] > seen.tuning.blink_share * (gap[blinks] + drop[blinks])
+    wide = gap[blinks] > max(seen.tuning.unclosed_mm, usual + seen.tuning.unlike_mm)
+    open_ = blinks[most & _level(seen, blinks) & wide]
     found[open_] = gap[open_]
     for frame in _shut_before(seen):
         near = slice(max(0, frame - 2), frame + 3)

@@ -9,7 +9,6 @@ from engine.quality import edit, eyes, lips, shape, sound, tracker
 from engine.quality.record import Flag
 from engine.quality.seen import Seen
 from engine.quality.tuning import TUNING
-from engine.words import counted
 
 _T = TUNING
 
@@ -69,9 +68,9 @@ TABLE: tuple[Kind, ...] = (
         "frozen",
         "frozen frames",
         tracker.frozen,
-        f"{counted(_T.repeats, 'frame')} like the one before",
-        lambda seen: 1 + seen.tuning.repeats,
-        setting=Threshold("repeats", "frames", 1, 100),
+        f"frames like the one before for {_T.least_freeze_s:g} s",
+        lambda seen: 1 + tracker.least_repeats(seen),
+        setting=Threshold("least_freeze_s", "s", 0.05, 10),
     ),
     Kind(
         "jitter",
@@ -101,15 +100,24 @@ TABLE: tuple[Kind, ...] = (
         "impossible",
         "no face does this",
         shape.impossible,
-        f"two excluding shapes above {_T.both:g}",
+        f"two excluding shapes above {_T.both:g}, rounded and wide lips above {_T.both_wide:g}",
         _beside(1),
         setting=Threshold("both", "weight", 0.2, 0.95),
+    ),
+    Kind(
+        "unlike",
+        "unlike recorded faces",
+        shape.unlike,
+        f"a mouth {_T.unlike_times:g} times as far from the mean as any recorded one",
+        _beside(1),
+        on=False,  # of people whom the prior does not know it flags what is theirs: 1.2 false ones a minute
+        setting=Threshold("unlike_times", "times as far", 0.5, 2.4),
     ),
     Kind(
         "range",
         "out of range",
         shape.out_of_range,
-        f"a weight below {_T.least_weight:g} or above {_T.most_weight:g}",
+        f"a weight below {_T.least_weight:g} or above {_T.most_weight:g}, of gaze {_T.most_gaze:g}",
         _beside(1),
         setting=Threshold("most_weight", "weight", 1, 2),
     ),

@@ -7,14 +7,19 @@ from functools import lru_cache
 
 import numpy as np
 
-from engine.anatomy import EXCLUSIVE, clash
+from engine.anatomy import EXCLUSIVE, Indices, pairs
 from engine.character import bundled
+from engine.errors import AssetError
 from engine.formats.livelink.sides import EXCHANGED, PULLING, judge
 from engine.jaw import limited
+from engine.likeness import recorded
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen, strengths
+from engine.quality.tuning import Tuning
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, runs
+from engine.words import counted
 
+_GAZE = np.array([name.startswith("eyeLook") for name in SHAPES])
 _SIDES = ("Left", "Right")
 _TELLING = 20_000  # frames that tell the sides; of a longer take every second one, every third, ...
 _MEETING = (
@@ -25,29 +30,48 @@ _MEETING = (
 
 
 def impossible(seen: Seen, low: int, high: int) -> Iterator[Flag]:
-    """Yield frames with two shapes that exclude each other."""
-    strength = strengths(seen, low, high, reach=0, verdict=lambda weights, _: clash(weights)[0])
-    for start, stop in runs(strength > seen.tuning.both):
-        worst = start + int(np.argmax(strength[start:stop]))
-        _, which = clash(seen.weights[low + worst : low + worst + 1])
+    """Yield frames with two shapes that exclude each other, beyond what people were recorded to do."""
+    limits = _limits(seen.tuning)
+    beyond = strengths(seen, low, high, reach=0, verdict=lambda weights, _: _clash_beyond(weights, limits)[0])
+    for start, stop in runs(beyond > 0):
+        worst = start + int(np.argmax(beyond[start:stop]))
+        _, which = _clash_beyond(seen.weights[low + worst : low + worst + 1], limits)
         first, second, reason = EXCLUSIVE[which[0]]
-        text = f"{first} and {second} are both at {strength[worst]:.2f} or more: {reason}."
-        yield Flag("impossible", low + start, low + stop, weight_of(strength[worst], seen.tuning.both, 1.0), text)
+        least = float(limits[which[0]])
+        strength = least + beyond[worst]
+        text = f"{first} and {second} are both at {strength:.2f} or more: {reason}."
+        yield Flag("impossible", low + start, low + stop, weight_of(strength, least, 1.0), text)
+
+
+def _limits(tuning: Tuning) -> Array:
+    """Return how strong both shapes of each row of `EXCLUSIVE` may be, (rows,)."""
+    wide = max(tuning.both, tuning.both_wide)
+    return np.array([wide if second == "mouthStretch" else tuning.both for _, second, _ in EXCLUSIVE])
+
+
+def _clash_beyond(weights: Array, limits: Array) -> tuple[Array, Indices]:
+    """Return by how much the worst pair of each frame of weights, (frames, 52), is beyond its limit, and its row."""
+    columns = np.ascontiguousarray(weights.T)
+    worst, which = np.full(len(weights), -np.inf), np.zeros(len(weights), np.int64)
+    for first, second, row in pairs():
+        beyond = np.minimum(columns[first], columns[second]) - limits[row]
+        which[beyond > worst] = row
+        np.maximum(worst, beyond, out=worst)
+    return worst, which
 
 
 def out_of_range(seen: Seen, low: int, high: int) -> Iterator[Flag]:
-    """Yield frames with a weight that is negative or above 1 by more than rounding."""
+    """Yield frames with a weight that is negative or above 1 by more than rounding, or than trackers report of gaze."""
+    most = np.where(_GAZE, max(seen.tuning.most_weight, seen.tuning.most_gaze), seen.tuning.most_weight)
 
     def verdict(weights: Array, kept: Mask) -> Array:
-        beyond = np.maximum(
-            seen.tuning.least_weight - weights.min(axis=1), weights.max(axis=1) - seen.tuning.most_weight
-        )
+        beyond = np.maximum(seen.tuning.least_weight - weights.min(axis=1), (weights - most).max(axis=1))
         return np.asarray(np.where(kept, beyond, 0.0))
 
     beyond = strengths(seen, low, high, reach=0, verdict=verdict)
     for start, stop in runs(beyond > 0):
         row = seen.weights[low + start + int(np.argmax(beyond[start:stop]))]
-        worst = int(np.argmax(np.maximum(-row, row - 1.0)))
+        worst = int(np.argmax(np.maximum(seen.tuning.least_weight - row, row - most)))
         text = f"{SHAPES[worst]} is at {row[worst]:.2f}; weights go from 0 to 1."
         weight = weight_of(float(beyond[start:stop].max()), 0.0, seen.tuning.full_beyond)
         yield Flag("range", low + start, low + stop, weight, text)
@@ -64,6 +88,27 @@ def swapped(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         text = f"Left and right of the mouth look exchanged (correlation {agreement:+.2f})."
         weight = weight_of(-agreement, seen.tuning.swapped, seen.tuning.full_swapped)
         yield Flag("swapped", 0, seen.length, weight, text)
+
+
+def unlike(seen: Seen, low: int, high: int) -> Iterator[Flag]:
+    """Yield frames on which the mouth is further from the mean face than any mouth that was recorded, by a factor.
+
+    The distance is that of the learned prior (`engine/likeness.py`); where that is missing, nothing is told.
+    """
+    try:
+        known = recorded()
+    except AssetError:
+        return
+    limit = seen.tuning.unlike_times * known.furthest
+    distance = np.where(seen.kept[low:high], known.distance(seen.controls[low:high]), 0.0)
+    for start, stop in runs(distance > limit):
+        most = float(distance[start:stop].max())
+        text = (
+            f"The mouth is further from its mean pose than all {counted(len(known.distances), 'recorded face')}, "
+            f"{most / known.furthest:.1f} times as far as the furthest."
+        )
+        weight = weight_of(most / known.furthest, seen.tuning.unlike_times, seen.tuning.full_unlike_times)
+        yield Flag("unlike", low + start, low + stop, weight, text)
 
 
 def crossing(seen: Seen, low: int, high: int) -> Iterator[Flag]:

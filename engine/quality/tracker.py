@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from functools import partial
 
@@ -32,6 +33,11 @@ def repeats(weights: Array, kept: Mask) -> Mask:
     return same
 
 
+def least_repeats(seen: Seen) -> int:
+    """Return how many frames like the one before make a freeze."""
+    return max(2, math.ceil(seen.tuning.least_freeze_s * seen.fps - 1e-6))
+
+
 def frozen(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield runs of frames like the one before; a face with every shape at zero rests, it is not frozen."""
 
@@ -41,8 +47,9 @@ def frozen(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         same[at] = weights[at].any(axis=1)
         return np.asarray(same, float)
 
+    least = least_repeats(seen)
     for start, stop in runs(strengths(seen, low, high, reach=1, verdict=verdict) > 0):
-        if stop - start >= seen.tuning.repeats:
+        if stop - start >= least:
             text = f"The face does not move at all for {lasting(stop - start + 1, seen.fps)}."
             weight = weight_of((stop - start) / seen.fps, 0.0, seen.tuning.full_freeze_s)
             yield Flag("frozen", low + start, low + stop, weight, text)

@@ -15,7 +15,7 @@ from app.window.main_window import MainWindow
 from engine import project
 from engine.formats import read_take, write_take
 from engine.lab.performer import demo
-from engine.take import SHAPE_INDEX
+from engine.take import SHAPE_INDEX, Take
 from tests.journeys.conftest import load, saved_as, settled
 
 JAW = SHAPE_INDEX["jawOpen"]
@@ -134,3 +134,41 @@ def test_a_project_of_edits_is_told_apart_from_its_recording(tmp_path: Path) -> 
     from engine.review.pairs import review
 
     assert not review(None, tmp_path / "p.retake").comparison.changes
+
+
+def test_a_movie_is_written_beside_the_work_and_tells_how_far_it_is(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take = read_take(demo.BUNDLED)
+    write_take(Take(take.weights[60:72], take.fps), tmp_path / "short.csv")
+    load(qtbot, window, tmp_path / "short.csv")
+    out, shares = tmp_path / "review.mp4", []
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(out), ""))
+    window.review.reporting.progress.connect(shares.append)
+    with qtbot.waitSignal(window.review.reporting.written, timeout=240_000):
+        window.actions_by_name["write_movie"].trigger()
+    qtbot.waitUntil(lambda: window.review.reporting.idle, timeout=20_000)
+    assert out.read_bytes()[4:8] == b"ftyp" and shares == sorted(shares) and shares[-1] == 1.0
+
+
+def test_writing_that_is_stopped_leaves_no_file(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "review.mp4"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(out), ""))
+    with qtbot.waitSignal(window.review.failed, timeout=240_000) as told:
+        window.actions_by_name["write_movie"].trigger()
+        window.review.handing_on.progress.button.click()
+    assert told.args[0] == "Writing review.mp4 was cancelled."
+    assert not [path for path in tmp_path.iterdir() if path.name.startswith("review")]
+
+
+def test_flags_and_notes_are_handed_on_as_markers(
+    qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compared(qtbot, window, edited(tmp_path / "b.csv", (60, 80)), monkeypatch)
+    out = tmp_path / "notes.edl"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(out), ""))
+    with qtbot.waitSignal(window.review.reporting.written, timeout=240_000):
+        window.actions_by_name["write_findings"].trigger()
+    assert "FCM: NON-DROP FRAME" in out.read_text() and "* LOC: " in out.read_text()

@@ -11,7 +11,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.settings import Settings
 from app.window.main_window import MainWindow
 from engine.formats import read_take, write_take
 from engine.lab.performer import demo
@@ -20,7 +19,7 @@ from engine.project import Project, peek, replay
 from engine.review.align import on_clock_of
 from engine.review.queue import FOLDER
 from engine.take import SHAPE_INDEX, Take
-from tests.journeys.conftest import end, load, saved_as, settled
+from tests.journeys.conftest import load, saved_as, settled
 from tests.journeys.test_review_notes import press, types
 
 Key = Qt.Key
@@ -86,18 +85,12 @@ def test_a_queue_of_five_is_judged_by_keyboard_and_taken_up_where_it_was_left(
     settled(qtbot, window)
 
     load(qtbot, window, demo.BUNDLED)  # which lets go of the review, as the end of the program does
-    again = MainWindow(DEMO, demo.BUNDLED, Settings(tmp_path / "other.ini"), unsaved=tmp_path / "unsaved2")
-    window.hide()
-    again.show()
-    try:
-        qtbot.waitUntil(lambda: again.inference.idle and again.isActiveWindow(), timeout=60_000)
-        again.curves.setFocus()
-        opened(qtbot, again, folder, monkeypatch)
-        assert again.review.queue.bar.text() == "3 of 5 judged" and again.review.queueing.current == 3
-        told = peek(folder / FOLDER / "shot1.retake").verdict
-        assert told is not None and (told.judgement, told.why, told.author) == ("Needs work", "ease the jaw in", "Ana")
-    finally:
-        end(qtbot, again)
+    opened(qtbot, window, folder, monkeypatch)  # all of it is read anew from the folder
+    shown(qtbot, window, 3)
+    assert window.review.queue.bar.text() == "3 of 5 judged"
+    told = peek(folder / FOLDER / "shot1.retake").verdict
+    assert told is not None and (told.judgement, told.why, told.author) == ("Needs work", "ease the jaw in", "Ana")
+    settled(qtbot, window)
 
 
 def test_a_pair_that_cannot_be_read_is_a_sentence_and_the_rest_goes_on(

@@ -96,10 +96,10 @@ def test_a_fill_says_the_visemes_unless_told_not_to(qtbot: QtBot, window: MainWi
         lips.append(
             [patch.reached[start - patch.start : stop - patch.start, LIPS] for patch in window.filling.variants]
         )
-        made = window.filling._request
+        made = window.filling._shown
         QTest.keyClick(window, Qt.Key.Key_Escape)
         window.spans.visemes.setChecked(False)
-    assert made.inputs["visemes"] == []
+    assert made.stored["visemes"] == []
     assert max(curve.min() for curve in lips[0]) < 2.0  # in every variant the lips meet where M, B or P is said
     assert np.mean([curve.mean() for curve in lips[0]]) < np.mean([curve.mean() for curve in lips[1]])
 

@@ -25,7 +25,7 @@ def test_every_command_that_writes_is_in_the_table_and_no_other() -> None:
         (command.__name__, name)
         for command in commands(cli.build())
         for name in inspect.signature(command).parameters
-        if name in ("out", "record", "key") and command.__name__ != "score"
+        if name in ("out", "record", "key", "findings", "for_editors") and command.__name__ != "score"
     }
     assert found == set(OUTPUTS)
 

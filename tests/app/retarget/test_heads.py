@@ -149,9 +149,9 @@ def test_a_kept_retarget_comes_back_on_the_head_as_it_was_corrected(
     pick(retarget.heads.boxes["mouthOpen"], "mouthClose")
     qtbot.waitUntil(lambda: moves(retarget, "mouthClose"), timeout=30_000)
     state, session = retarget.retargeting, retarget._session
-    from app.retarget.carry import Carried
+    from engine.editing import Retargeted
 
-    state.show(Carried(session.document.take))
+    state.show(Retargeted(session.document.take))
     click(retarget.panel.keep_button)
     qtbot.waitUntil(lambda: session.document.character is not None, timeout=20_000)
     assert session.document.contents().edits[-1].inputs["reading"] == {"names": {"mouthOpen": "mouthClose"}}

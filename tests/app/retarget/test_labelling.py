@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.retarget.actions import RetargetActions
-from app.retarget.retargeting import LABELS
+from app.retarget.solving import LABELS
 from engine.formats.labels import read
 from engine.take import SHAPE_INDEX
 from tests.app.retarget.test_retargeting import aimed, click, settle

@@ -10,11 +10,11 @@ from PySide6.QtWidgets import QApplication, QPushButton
 from pytestqt.qtbot import QtBot
 
 from app.retarget.actions import RetargetActions
-from app.retarget.carry import Carried
 from app.retarget.sides import sides
 from app.retarget.strengths import STEPS, position, strength_at
 from app.session.commands import restored
 from engine.character import Character, bundled
+from engine.editing import Retargeted
 from engine.extended import bundled_face
 from engine.formats.markers import write
 from engine.formats.markers.capture import Markers
@@ -103,7 +103,7 @@ def test_a_project_that_is_opened_again_shows_the_head_it_was_kept_on(
     qtbot: QtBot, aimed: RetargetActions, other_head: Path
 ) -> None:
     session = aimed._session
-    aimed.retargeting.show(Carried(session.document.take))
+    aimed.retargeting.show(Retargeted(session.document.take))
     click(aimed.panel.keep_button)
     qtbot.waitUntil(lambda: session.document.character is not None, timeout=20_000)
     contents = session.document.contents()

@@ -136,4 +136,6 @@ def test_steps_from_a_file_do_and_undo_what_those_that_were_made_do(document: Do
             getattr(each.undo, go)()
         np.testing.assert_array_equal(again.take.weights, document.take.weights)
         np.testing.assert_array_equal(again.asked, document.asked)
-        assert (again.take.fps, again.marks, again.visemes) == (document.take.fps, document.marks, document.visemes)
+        assert (again.take.fps, again.marks) == (document.take.fps, document.marks)
+        cues = [each.visemes.cues if each.visemes is not None else () for each in (document, again)]
+        assert cues[0] == cues[1]

@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.session import Session
 from app.session.commands import EditCommand, restored
 from engine import project
-from engine.editing import Patch, edit_control
+from engine.editing import ControlRequest, Patch, set_control
 from engine.formats import read_take, write_take
 from engine.inpaint.fill import fill
 from engine.project import Project, Span, replay
@@ -52,7 +52,7 @@ def test_each_step_and_each_undo_says_what_is_lost(session: Session, tmp_path: P
         session, Patch.between(session.document.take, fill(session.document.take, (40, 60))[0].take, (40, 60)), "fill"
     )
     states.append(session.document.take)
-    pushed(session, edit_control(session.document.take, "lips_vertical", (104, 108), "add", 4.0))
+    pushed(session, set_control(session.document.take, ControlRequest("lips_vertical", (104, 108), "add", 4.0)))
     states.append(session.document.take)
     assert runs(states[1].lost) == [(60, 85), ROWS] and states[2].lost.sum() < states[1].lost.sum()
     for state in states:

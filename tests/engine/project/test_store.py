@@ -292,20 +292,3 @@ def test_a_project_is_read_beside_the_program_that_has_it_open_and_left_as_it_wa
     alive.put(contents)
     alive.close()
     assert same(reopened(path), contents)
-
-
-def test_a_project_that_is_written_while_it_is_read_is_read_whole(
-    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path, copied = tmp_path / "a.retake", shutil.copyfile
-    alive = project.create(path, contents)
-    turns = iter(range(3))
-
-    def written_meanwhile(source: Path, target: Path) -> None:
-        copied(source, target)
-        if str(source).endswith(".retake") and (turn := next(turns, None)) is not None:
-            alive.put(replace(alive.contents, position=turn))
-
-    monkeypatch.setattr("engine.project.database.shutil.copyfile", written_meanwhile)
-    assert Project.open(path, read_only=True).contents.position == 2
-    alive.close()

@@ -2,62 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from engine.anatomy import pairs
-from engine.controls import CONTROL_INDEX, measure
+from engine.controls import CONTROL_INDEX
 from engine.formats.livelink.sides import exchange, judge
+from engine.lab.evaluate.flags import plants_mouth
+from engine.lab.evaluate.flags.planting import EDGE_S, Plant, Planted, free_range, with_rows
 from engine.quality import TUNING, Seen
 from engine.quality.seen import LIDS, drops
-from engine.quality.shape import crossed_mm
-from engine.speech.lane import VisemeLane, attached
-from engine.speech.visemes import Cue
-from engine.take import SHAPE_INDEX, SHAPES, Array, runs
+from engine.take import SHAPE_INDEX, SHAPES
 
-LIPS, JAW, CLOSE = CONTROL_INDEX["lips_vertical"], SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
+LIPS = CONTROL_INDEX["lips_vertical"]
 STEADY = [
     i for i, name in enumerate(SHAPES) if name.startswith(("mouth", "brow", "cheek", "nose")) and name != "mouthClose"
 ]
-EDGE_S = 1.0  # nothing is planted nearer to the ends of an excerpt
-CUE_S = 0.12
-
-
-@dataclass(frozen=True, eq=False)
-class Planted:
-    """An excerpt with a fault on the frames start to stop (half-open)."""
-
-    seen: Seen
-    start: int
-    stop: int
-
-
-# Puts a fault into an excerpt; None where this one gives no occasion for it.
-Plant = Callable[[Seen, np.random.Generator], Planted | None]
-
-
-def with_rows(seen: Seen, weights: Array) -> Seen:
-    """Return the same excerpt with other weights, (frames, 52), measured anew."""
-    return replace(seen, weights=weights, controls=measure(weights))
-
-
-def _range(seen: Seen, rng: np.random.Generator, least_s: float, most_s: float) -> tuple[int, int] | None:
-    """Return a random range without lost frames."""
-    edge = seen.frames(EDGE_S)
-    for _ in range(50):
-        length = max(1, round(rng.uniform(least_s, most_s) * seen.fps))
-        if seen.length - 2 * edge <= length:
-            return None
-        start = int(rng.integers(edge, seen.length - edge - length))
-        if not seen.lost[start - 3 : start + length + 3].any():
-            return start, start + length
-    return None
 
 
 def _lost(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 0.05, 1.0)
+    place = free_range(seen, rng, 0.05, 1.0)
     if place is None:
         return None
     lost = seen.lost.copy()
@@ -66,7 +31,7 @@ def _lost(seen: Seen, rng: np.random.Generator) -> Planted | None:
 
 
 def _spike(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 0.0, 0.0)
+    place = free_range(seen, rng, 0.0, 0.0)
     if place is None:
         return None
     weights = seen.weights.copy()
@@ -77,7 +42,7 @@ def _spike(seen: Seen, rng: np.random.Generator) -> Planted | None:
 
 
 def _frozen(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 0.12, 0.5)
+    place = free_range(seen, rng, 0.12, 0.5)
     if place is None or not seen.weights[place[0] - 1].any():
         return None
     weights = seen.weights.copy()
@@ -86,7 +51,7 @@ def _frozen(seen: Seen, rng: np.random.Generator) -> Planted | None:
 
 
 def _jitter(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 1.0, 3.0)
+    place = free_range(seen, rng, 1.0, 3.0)
     if place is None:
         return None
     weights = seen.weights.copy()
@@ -98,7 +63,7 @@ def _jitter(seen: Seen, rng: np.random.Generator) -> Planted | None:
 
 
 def _pop(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 0.5, 3.0)
+    place = free_range(seen, rng, 0.5, 3.0)
     if place is None:
         return None
     weights = seen.weights.copy()
@@ -109,7 +74,7 @@ def _pop(seen: Seen, rng: np.random.Generator) -> Planted | None:
 
 
 def _head(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 0.0, 0.0)
+    place = free_range(seen, rng, 0.0, 0.0)
     if place is None:
         return None
     assert seen.rotations is not None
@@ -120,7 +85,7 @@ def _head(seen: Seen, rng: np.random.Generator) -> Planted | None:
 
 
 def _impossible(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 0.2, 1.0)
+    place = free_range(seen, rng, 0.2, 1.0)
     if place is None:
         return None
     weights = seen.weights.copy()
@@ -131,7 +96,7 @@ def _impossible(seen: Seen, rng: np.random.Generator) -> Planted | None:
 
 
 def _out_of_range(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 0.1, 1.0)
+    place = free_range(seen, rng, 0.1, 1.0)
     if place is None:
         return None
     weights = seen.weights.copy()
@@ -141,85 +106,12 @@ def _out_of_range(seen: Seen, rng: np.random.Generator) -> Planted | None:
     return Planted(with_rows(seen, weights), *place)
 
 
-def _through(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    """Push one lip over the other with the jaw shut, or both lids past each other, by a share of what shapes can do."""
-    place = _range(seen, rng, 0.2, 1.0)
-    if place is None:
-        return None
-    weights, here = seen.weights.copy(), slice(*place)
-    amount = rng.uniform(0.6, 1.0)
-    if rng.random() < 0.7:
-        weights[here, JAW] = weights[here, CLOSE] = 0.0
-        for name in ("mouthShrugLower", "mouthRollUpper", "mouthPressLeft", "mouthPressRight"):
-            weights[here, SHAPE_INDEX[name]] = amount
-        if crossed_mm(weights[here], "lip").max() < 1.0:
-            return None
-    else:
-        for name in ("eyeBlink", "eyeSquint", "eyeLookDown"):
-            for side in LIDS:
-                weights[here, SHAPE_INDEX[name + side]] = 0.5 + amount / 2
-        if crossed_mm(weights[here], "lid").max() < 5.0:
-            return None
-    return Planted(with_rows(seen, weights), *place)
-
-
 def _swapped(seen: Seen, rng: np.random.Generator) -> Planted | None:
     """Exchange the sides of a mouth that does go to one side."""
     curves = {name: seen.weights[:, SHAPE_INDEX[name]] for name in SHAPES}
     if judge(curves, seen.kept).agreement is None:
         return None
     return Planted(with_rows(seen, exchange(seen.weights)), 0, seen.length)
-
-
-def _cues(seen: Seen, label: str, within_mm: float) -> tuple[VisemeLane, list[tuple[int, int]]] | None:
-    """Return cues where the lips come as near as a sound needs, which are what is said there as far as flags know."""
-    near = [
-        run
-        for run in runs(seen.controls[:, LIPS] < within_mm)
-        if run[1] - run[0] < seen.frames(0.4) and not seen.lost[slice(*run)].any()
-    ]
-    near = [run for run in near if seen.frames(EDGE_S) < run[0] < seen.length - seen.frames(EDGE_S)]
-    if not near:
-        return None
-    cues = []
-    for start, stop in near:
-        middle = (start + stop) / 2 / seen.fps
-        cues.append(Cue(middle - CUE_S / 2, middle + CUE_S / 2, label))
-    return attached(cues, "planted"), near
-
-
-def _parted(label: str, within_mm: float, least_mm: float) -> Plant:
-    def plant(seen: Seen, rng: np.random.Generator) -> Planted | None:
-        """Open the jaw over one of the places where the lips do come near."""
-        found = _cues(seen, label, within_mm)
-        if found is None:
-            return None
-        lane, near = found
-        start, stop = near[int(rng.integers(len(near)))]
-        margin = seen.frames(0.15)
-        first, last = max(0, start - margin), min(seen.length, stop + margin)
-        bump = np.sin(np.linspace(0, np.pi, last - first)) ** 0.5
-        for size in np.linspace(0.1, 1.0, 19) * rng.uniform(0.8, 1.2):
-            weights = seen.weights.copy()
-            weights[first:last, JAW] = np.minimum(weights[first:last, JAW] + size * bump, 1.0)
-            weights[first:last, CLOSE] *= 1 - bump
-            opened = with_rows(seen, weights)
-            if opened.controls[start - 1 : stop + 1, LIPS].min() > least_mm * 1.5:
-                return Planted(replace(opened, visemes=lane), start - 2, stop + 2)
-        return None
-
-    return plant
-
-
-def _close(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 0.1, 1.0)
-    if place is None:
-        return None
-    weights, here = seen.weights.copy(), slice(*place)
-    weights[here, CLOSE] = np.minimum(weights[here, JAW] + rng.uniform(0.1, 0.5), 1.0)
-    if (weights[here, CLOSE] - weights[here, JAW]).max() < 0.09:
-        return None
-    return Planted(with_rows(seen, weights), *place)
 
 
 def _blink(seen: Seen, rng: np.random.Generator) -> tuple[int, int, int] | None:
@@ -285,7 +177,7 @@ def _unblinking(seen: Seen, rng: np.random.Generator) -> Planted | None:
 
 
 def _missed(seen: Seen, rng: np.random.Generator) -> Planted | None:
-    place = _range(seen, rng, 0.2, 1.0)
+    place = free_range(seen, rng, 0.2, 1.0)
     if place is None:
         return None
     asked = np.full_like(seen.controls, np.nan)
@@ -296,7 +188,7 @@ def _missed(seen: Seen, rng: np.random.Generator) -> Planted | None:
 
 def _seam(seen: Seen, rng: np.random.Generator) -> Planted | None:
     """Lay an offset with hard borders over one range, and one with eased borders over another, as a control."""
-    place, eased = _range(seen, rng, 0.4, 1.5), _range(seen, rng, 1.0, 1.5)
+    place, eased = free_range(seen, rng, 0.4, 1.5), free_range(seen, rng, 1.0, 1.5)
     if place is None or eased is None or abs(place[0] - eased[0]) < 3 * seen.fps:
         return None
     weights = seen.weights.copy()
@@ -334,12 +226,13 @@ PLANTS: dict[str, Plant] = {
     "pop": _pop,
     "head": _head,
     "impossible": _impossible,
+    "unlike": plants_mouth.unlike,
     "range": _out_of_range,
-    "through": _through,
+    "through": plants_mouth.through,
     "swapped": _swapped,
-    "open": _parted("M", 1.0, TUNING.closed_mm),
-    "teeth": _parted("F", 4.0, TUNING.teeth_mm),
-    "close": _close,
+    "open": plants_mouth.parted("M", 1.0, TUNING.closed_mm),
+    "teeth": plants_mouth.parted("F", 4.0, TUNING.teeth_mm),
+    "close": plants_mouth.close,
     "unclosed": _unclosed,
     "late": _late,
     "unblinking": _unblinking,

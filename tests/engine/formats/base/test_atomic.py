@@ -5,18 +5,13 @@ from __future__ import annotations
 import multiprocessing
 import os
 import stat
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from engine.errors import EngineError
-from engine.formats.base import inputs
 from engine.formats.base.atomic import PART, replacement, sweep, write_bytes
-from engine.formats.base.content import content_of
-from engine.formats.base.lock import FileLock
-from engine.formats.base.owner import MARK, owner_mark, owner_runs
+from engine.formats.base.owner import owner_mark
 
 
 def test_a_link_is_followed_and_stays(tmp_path: Path) -> None:
@@ -70,24 +65,6 @@ def test_a_write_protected_file_is_not_replaced(tmp_path: Path) -> None:
     assert path.read_bytes() == b"x" and stat.S_IMODE(path.stat().st_mode) == 0o640
 
 
-def test_what_is_read_is_not_written_over_under_any_name(tmp_path: Path) -> None:
-    path, link, second = tmp_path / "in.csv", tmp_path / "link.csv", tmp_path / "second.csv"
-    path.write_bytes(b"kept")
-    link.symlink_to(path)
-    os.link(path, second)
-    with inputs.protected():
-        content_of(path)
-        for name in (path, link, second, tmp_path / "." / "in.csv"):
-            with pytest.raises(EngineError, match="what this command reads"):
-                write_bytes(name, [b"x"])
-        write_bytes(tmp_path / "out.csv", [b"x"])
-    assert path.read_bytes() == b"kept"
-    with inputs.protected(allowed=True):
-        content_of(path)
-        write_bytes(path, [b"x"])
-    assert path.read_bytes() == b"x"
-
-
 def _write_until_killed(path: Path, ready: multiprocessing.synchronize.Event) -> None:
     with replacement(path) as temporary:
         temporary.write_bytes(b"half")
@@ -114,36 +91,6 @@ def test_what_a_kill_leaves_goes_with_the_next_write_and_what_runs_stays(tmp_pat
         alive.join()
     sweep(tmp_path)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted(["c.csv", foreign.name])
-
-
-def test_a_lock_that_a_kill_left_goes_with_the_next_write_and_others_stay(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    code = "import os, sys; from pathlib import Path; from engine.formats.base.lock import FileLock; "
-    code += "locks = [FileLock(Path(sys.argv[1]) / name) for name in ('a.retake', 'b.partial2.csv')]; os._exit(0)"
-    subprocess.run([sys.executable, "-c", code, str(tmp_path)], check=True)
-    held = FileLock(tmp_path / "held.retake")
-    (tmp_path / ".somebody.lock").write_text("else's")
-    (tmp_path / ".c.retake.lock").touch()  # killed before its name was in it
-    monkeypatch.setattr("engine.formats.base.lock.time.sleep", lambda _: None)
-    assert len(list(tmp_path.iterdir())) == 5
-    write_bytes(tmp_path / "c.csv", [b"x"])
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == [".held.retake.lock", ".somebody.lock", "c.csv"]
-    assert held.held
-    held.release()
-
-
-def test_an_owner_is_known_by_its_process_and_not_by_a_clock(tmp_path: Path) -> None:
-    assert owner_runs(owner_mark()) is True
-    computer, boot, pid, began = MARK.fullmatch(owner_mark()).groups()
-    assert owner_runs(f"{computer}-{boot}-{pid}-{int(began) + 1}") is False  # the number was given to another since
-    assert owner_runs(f"{computer}-{boot[::-1]}-{pid}-{began}") is (boot == boot[::-1])
-    assert owner_runs(f"{'0' * 8}-{boot}-{pid}-{began}") is None  # another computer's
-    code = "from engine.formats.base.owner import owner_mark; print(owner_mark())"
-    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
-    assert owner_runs(ended) is False
-    for text in ("", "csv", f"{ended}-", "x" * 500):
-        assert owner_runs(text) is None
 
 
 @pytest.mark.parametrize("name", ["顔" * 80 + ".csv", "x" * 251 + ".csv", "😀" * 60 + ".csv"])

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from engine import retouch
 from engine.clean.takes import clean
-from engine.editing import Patch, edit_control
+from engine.editing import ControlRequest, Patch, set_control
 from engine.errors import EditError
 from engine.formats import livelink
 from engine.formats.base.reading import Reading, Sides
@@ -97,7 +97,9 @@ QUICK: dict[str, Callable[[Take, Frames, int], Take]] = {
     "labels": lambda take, frames, seed: retarget_weights(take, {frames[0]: {"jawOpen": 0.5}}),
 }
 SLOW: dict[str, Callable[[Take, Frames, int], Take]] = {
-    "edit": lambda take, frames, seed: edit_control(take, "lips_vertical", frames, "add", 3.0).apply(take),
+    "edit": lambda take, frames, seed: set_control(take, ControlRequest("lips_vertical", frames, "add", 3.0)).apply(
+        take
+    ),
     "fill": lambda take, frames, seed: fill(take, frames, style="perform", seed=seed)[0].take,
     "fill what is lost": lambda take, frames, seed: fill_lost(take, seed=seed),
     "pin": _pin,

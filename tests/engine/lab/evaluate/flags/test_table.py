@@ -5,7 +5,8 @@ import pytest
 
 from engine.formats import read_take
 from engine.lab.evaluate.flags import table as flags
-from engine.lab.evaluate.flags.plants import PLANTS, Planted
+from engine.lab.evaluate.flags.planting import Planted
+from engine.lab.evaluate.flags.plants import PLANTS
 from engine.lab.performer import demo
 from engine.quality import KINDS, Flag, flags_of
 from engine.quality.seen import Sound
@@ -29,7 +30,7 @@ def test_every_kind_has_a_plant() -> None:
 
 
 @pytest.mark.parametrize(
-    "kind", ["spike", "frozen", "jitter", "pop", "head", "range", "close", "seam", "lost", "short"]
+    "kind", ["spike", "frozen", "jitter", "pop", "head", "range", "close", "seam", "lost", "short", "unlike"]
 )
 def test_a_fault_is_planted_where_it_is_told_and_changes_nothing_elsewhere(kind: str) -> None:
     rng = np.random.default_rng(SEED)
@@ -41,8 +42,11 @@ def test_a_fault_is_planted_where_it_is_told_and_changes_nothing_elsewhere(kind:
         away[plant.start : plant.stop] = False
         if kind != "seam":  # which also lays an eased edit beside the hard one
             assert (plant.seen.weights[away] == seen.weights[: plant.seen.length][away]).all()
-        found += any(flag.kind == kind and flag.stop > plant.start - 3 for flag in flags_of(plant.seen))
-    assert found > 0.6 * len(plants) > 0
+        found += any(
+            flag.kind == kind and flag.stop > plant.start - 3 for flag in flags_of(plant.seen, flags.EVERY_KIND)
+        )
+    least = 0.1 if kind == "unlike" else 0.6  # the demo says little that can be overdone
+    assert found > least * len(plants) > 0
 
 
 def test_a_flag_is_found_right_or_wrong_by_where_it_lies(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -52,7 +56,7 @@ def test_a_flag_is_found_right_or_wrong_by_where_it_lies(monkeypatch: pytest.Mon
     monkeypatch.setattr(
         flags, "_planted", lambda kind, sources: [(plant.seen, plant, "demo")] if kind == "spike" else []
     )
-    monkeypatch.setattr(flags, "flags_of", lambda seen: made)
+    monkeypatch.setattr(flags, "flags_of", lambda seen, settings: made)
     rows = {row["kind"]: row for row in flags.table(None, lambda sentence: None)}
     spike, pop = rows["spike"], rows["pop"]
     assert (spike["planted"], spike["found"], spike["right"], spike["wrong"]) == (1, 1, 1, 1)
@@ -65,7 +69,9 @@ def test_takes_without_plants_tell_false_flags_a_minute() -> None:
     weights = spoilt.take.weights.copy()
     weights[1000, 17] += 2.0
     spoilt = flags.Source("spoilt", spoilt.take.with_weights(weights), spoilt.rotations, spoilt.sound)
-    first, second, both = flags._unplanted([clean, spoilt])
+    found = flags._unplanted([clean, spoilt])
+    first, second, both = found.rows
     assert second["flags"] > first["flags"] and both["flags"] == first["flags"] + second["flags"]
     assert both["flags_per_min_low"] < both["flags_per_min"] < both["flags_per_min_high"]
-    assert "range 1" in second["kinds"] and "counts" not in both
+    assert "range 1" in second["kinds"] and found.counts["range"] == 1
+    assert both["flags"] == found.counts.total()
