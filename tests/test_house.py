@@ -15,7 +15,11 @@ def test_the_picture_is_the_one_that_the_imports_draw() -> None:
 
 def test_every_file_that_the_page_names_is_there() -> None:
     page = (house.ROOT / "ARCHITECTURE.md").read_text()
-    named = {name for name in re.findall(r"`((?:app|engine|tests|assets)/[\w/.]+)", page) if "<" not in name and "/x/" not in name}
+    named = {
+        name
+        for name in re.findall(r"`((?:app|engine|tests|assets)/[\w/.]+)", page)
+        if "<" not in name and "/x/" not in name
+    }
     assert len(named) > 30
     assert [name for name in sorted(named) if not (house.ROOT / name).exists()] == []
 

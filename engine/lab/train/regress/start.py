@@ -14,7 +14,8 @@ from torch import Tensor, nn
 
 from engine.lab.train.regress.data import Windows
 from engine.regress.areas import Area
-from engine.regress.network import AreaNetwork, UNet
+from engine.regress.network import AreaNetwork
+from engine.regress.unet import UNet
 
 LEAST = 1e-4  # of a weight, squared: a shape that no error was seen of may still move
 WINDOWS = 60  # of a person, by which nobody counts for more than the others

@@ -31,7 +31,8 @@ from engine.lab.train.regress.start import begin, without_further
 from engine.models.checkpoint import MODELS, Card, commit, save_card, save_model
 from engine.models.distances import Distances
 from engine.regress.areas import AREAS, EXTENDED_AREAS, Area
-from engine.regress.network import AreaNetwork, UNet, network_of
+from engine.regress.network import AreaNetwork, network_of
+from engine.regress.unet import UNet
 from engine.take import SHAPES, Array
 
 Report = Callable[[str], None]
