@@ -13,7 +13,7 @@ from app.session.commands import EditCommand, MarkCommand, ReadingCommand, Visem
 from engine.editing import Patch
 from engine.extended import bundled_face
 from engine.formats.base.reading import ReadAs, Reading
-from engine.project import Marks, Pin, Span, replay
+from engine.project import Marks, Media, Pin, Span, replay
 from engine.speech.lane import attached
 from engine.speech.visemes import Cue
 from engine.take import SHAPES, Take
@@ -139,3 +139,12 @@ def test_steps_from_a_file_do_and_undo_what_those_that_were_made_do(document: Do
         assert (again.take.fps, again.marks) == (document.take.fps, document.marks)
         cues = [each.visemes.cues if each.visemes is not None else () for each in (document, again)]
         assert cues[0] == cues[1]
+
+
+def test_while_the_sound_is_dragged_it_begins_where_it_is_shown_and_then_where_it_is_kept(document: Document) -> None:
+    document.set_marks(document.marks.with_medium("audio", Media("audio", "a.wav", "ab" * 32, 0.5)))
+    assert document.offset_s("audio") == -0.5 and document.offset_s("video") == 0.0
+    document.slide("audio", 1.25)
+    assert document.offset_s("audio") == 1.25 and document.offset_s("video") == 0.0
+    document.slide("audio", None)
+    assert document.offset_s("audio") == -0.5
