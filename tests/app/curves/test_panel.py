@@ -35,7 +35,7 @@ def panel(qtbot: QtBot) -> Iterator[CurvesPanel]:
     shown.session.view.set_range(100, 200)
     with qtbot.waitExposed(host):
         host.show()
-    qtbot.waitUntil(lambda: not shown.moving)
+    qtbot.waitUntil(lambda: not shown.moving, timeout=30_000)
     yield shown
 
 
@@ -85,7 +85,9 @@ def test_lanes_stay_under_the_pointer_until_the_button_is_let_go(
     QTest.mousePress(panel.viewport(), LEFT, PLAIN, place)
     assert not panel.moving and [lane.scene_box() for lane in panel.lanes] == before
     QTest.mouseRelease(panel.viewport(), LEFT, PLAIN, place)
-    qtbot.waitUntil(lambda: not panel.moving and panel.lanes[4].scene_box().height() > 1.5 * before[4].height())
+    qtbot.waitUntil(
+        lambda: not panel.moving and panel.lanes[4].scene_box().height() > 1.5 * before[4].height(), timeout=30_000
+    )
 
 
 @pytest.mark.parametrize(("share", "opens"), [(EXPANDER - 0.05, True), (EXPANDER + 0.05, False)])
