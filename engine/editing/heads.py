@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from engine.formats.markers.capture import Markers
     from engine.spacetime.source import Source
 
-Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may raise, to stop
+Progress = Callable[[float], None]  # is called with the share that is done, 0..1; it may raise, to stop
 FEWEST_SHARED = 4  # points that have a marker, below which no mesh can be led
 
 
-def nobody(_: float) -> None:
-    """Tell nobody."""
+def ignore(_: float) -> None:
+    """Ignore the progress."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,32 +136,32 @@ class Retargeted:
         return Patch.between(take, take.with_weights(self.take.weights), (0, len(take)))
 
 
-def retarget(performance: Performance, request: RetargetRequest, tell: Tell = nobody) -> Retargeted:
+def retarget(performance: Performance, request: RetargetRequest, progress: Progress = ignore) -> Retargeted:
     """Return the target's weights that move its markers as the performance's move; raises `EditError`."""
     start, stop = request.frames or (0, len(performance.take))
     source = performance.source if request.frames is None else performance.source.part(start, stop)
-    return Retargeted(_matched(source, request, tell), start)
+    return Retargeted(_matched(source, request, progress), start)
 
 
-def retarget_from_labels(performance: Performance, request: LabelRequest, tell: Tell = nobody) -> Retargeted:
+def retarget_from_labels(performance: Performance, request: LabelRequest, progress: Progress = ignore) -> Retargeted:
     """Return the target's weights between the labels; a capture's markers are matched first. Raises `EditError`."""
     from engine.manifold.retarget import from_labels
 
     base, features = performance.take, None
     if performance.capture is not None:
-        base = _matched(performance.capture, request.movement, lambda share: tell(share / 2))
+        base = _matched(performance.capture, request.movement, lambda share: progress(share / 2))
         features = performance.features
-    made = from_labels(base, request.labels, source=features, tell=tell)
+    made = from_labels(base, request.labels, source=features, progress=progress)
     return Retargeted(without_lacking(made.take, request.movement.head), 0, made.uncertainty)
 
 
-def _matched(source: Source, request: RetargetRequest, tell: Tell) -> Take:
+def _matched(source: Source, request: RetargetRequest, progress: Progress) -> Take:
     from engine.spacetime.retarget import retarget as by_movement
     from engine.spacetime.source import with_gaps
 
     measured = source if request.landmarks is None else with_gaps(source, request.landmarks)
     layout = named(request.places) if request.places else None
-    return by_movement(measured, request.head, layout=layout, matching=request.matching, tell=tell)
+    return by_movement(measured, request.head, layout=layout, matching=request.matching, progress=progress)
 
 
 def suggest_frames(performance: Performance, count: int, labelled: Sequence[int] = ()) -> list[int]:

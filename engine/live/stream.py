@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.clean.infer import Cleaner, CleanState, believable, bundled
+from engine.clean.infer import Cleaner, CleanState, bundled, plausible
 from engine.live.decode import decode
 from engine.live.packet import Drop, Floats, Packet
 from engine.take import SHAPES
@@ -49,7 +49,7 @@ class LiveFrame:
 
 @dataclass(frozen=True, eq=False)
 class Arrival:
-    """A believable packet with its place in time; what a recorder keeps, late ones too.
+    """A plausible packet with its place in time; what a recorder keeps, late ones too.
 
     Attributes
     ----------
@@ -187,7 +187,7 @@ class Stream:
 
     def _arrival(self, packet: Packet, arrived_s: float) -> Arrival:
         weights = packet.weights
-        if weights is not None and believable(weights) is None:
+        if weights is not None and plausible(weights) is None:
             self.counts["weights that no face has"] += 1
             weights = None
         time_s, late = self._clock.place(packet, arrived_s)
@@ -202,7 +202,7 @@ class Stream:
         self._state = self._advance(arrival)
         self._time_s = arrival.time_s
         self.counts["frames"] += 1
-        clean = (1 - self.strength) * self._raw + self.strength * self._state.shown
+        clean = (1 - self.strength) * self._raw + self.strength * self._state.output
         latency_ms = (now() - arrived_s) * 1e3
         lost = arrival.weights is None
         return LiveFrame(

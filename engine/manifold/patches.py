@@ -24,11 +24,11 @@ REACH = 2.0  # neighbours count by distance to the power of minus this
 NEAR = 0.05  # of a patch's mean distance: what is nearer counts no more, else a held pose would cut itself off
 COTANGENTS = (1e-3, 10.0)  # half of them, of a triangle's angles
 CHUNK_ENTRIES = 1 << 20  # of patch matrices that are in memory at a time
-Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may raise, to stop
+Progress = Callable[[float], None]  # is called with the share that is done, 0..1; it may raise, to stop
 
 
-def silent(_: float) -> None:
-    """Tell nobody."""
+def ignore(_: float) -> None:
+    """Ignore the progress."""
 
 
 def rings(triangles: npt.NDArray[np.integer], points: Array, *, size: int = 1) -> sp.csr_array:
@@ -91,7 +91,7 @@ def alignment(
     *,
     dimension: int = 3,
     stiffness: float = 0.0,
-    tell: Tell = silent,
+    progress: Progress = ignore,
 ) -> sp.csc_array:
     """Return B of ZLL17 equation 15: what it costs a data set to leave the local structure of `points`.
 
@@ -105,16 +105,16 @@ def alignment(
     points : (n, D) data points
     neighbourhoods : (n, n) weights; row i holds the members of patch i
     dimension : of the tangent space; directions that a patch does not have are left out
-    tell : is told the share that is done
+    progress : called with the share that is done
     """
-    rows, columns, values = zip(*_scattered(points, neighbourhoods, dimension, stiffness, tell), strict=True)
+    rows, columns, values = zip(*_scattered(points, neighbourhoods, dimension, stiffness, progress), strict=True)
     places = (np.concatenate(rows), np.concatenate(columns))
     count = len(points)
     return sp.coo_array((np.concatenate(values), places), shape=(count, count)).tocsc()
 
 
 def _scattered(
-    points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float, tell: Tell
+    points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float, progress: Progress
 ) -> Iterator[tuple[npt.NDArray[np.integer], npt.NDArray[np.integer], Array]]:
     """Yield rows, columns and values of the patches' matrices, some patches of one size at a time."""
     sizes = np.diff(neighbourhoods.indptr)
@@ -122,7 +122,7 @@ def _scattered(
     for size in np.unique(sizes[sizes > 0]):
         alike = np.flatnonzero(sizes == size)
         for patches in np.array_split(alike, -(-len(alike) * int(size) ** 2 // CHUNK_ENTRIES)):
-            tell(done / len(sizes))
+            progress(done / len(sizes))
             done += len(patches)
             entries = neighbourhoods.indptr[patches][:, None] + np.arange(size)
             members = neighbourhoods.indices[entries]

@@ -10,12 +10,12 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from engine.errors import EditError
-from engine.manifold.patches import Indices, LabelSolver, Tell, alignment, silent, similar
+from engine.manifold.patches import Indices, LabelSolver, Progress, alignment, ignore, similar
 from engine.pose import Pose, filled
 from engine.take import SHAPES, Array, Take
 from engine.words import counted
 
-COORDINATES = 40  # principal coordinates that tell frames apart; the rest is noise, and slow to search
+COORDINATES = 40  # principal coordinates that distinguish frames; the rest is noise, and slow to search
 GAIN_RIDGE = 0.3  # how far a gain is doubted, in labels of typical size: chosen on the validation takes
 
 
@@ -48,7 +48,7 @@ class Retargeter:
     source : (frames, D) what the source does, such as feature points in mm
     base : (frames, q) the target as it would be with no labels
     labelled : (m,) frames
-    tell : is told the share that is done, 0..1; it may raise, to stop
+    progress : called with the share that is done, 0..1; it may raise, to stop
 
     Raises
     ------
@@ -61,7 +61,7 @@ class Retargeter:
         base: Array,
         labelled: Indices,
         settings: Settings = Settings(),
-        tell: Tell = silent,
+        progress: Progress = ignore,
     ) -> None:
         self._base = np.asarray(base, np.float64)
         self._labelled = np.asarray(labelled, np.int64)
@@ -73,7 +73,7 @@ class Retargeter:
             similar(points[self._solved], size=settings.neighbours),
             dimension=settings.dimension,
             stiffness=settings.stiffness,
-            tell=tell,
+            progress=progress,
         )
         place = np.searchsorted(self._solved, self._labelled)
         self._solver = LabelSolver(energy, place, beta=settings.beta)
@@ -142,7 +142,7 @@ def scaled_to(base: Array, rest: Array, labelled: Indices, labels: Array) -> Arr
     """Return the base, (frames, n, d), each point with its own linear gain that brings it nearer to its labels.
 
     The gain is a ridge regression through rest, of what labels ask beyond the base on how far the base is from rest. A
-    few labels then tell about frames unlike any of them, where the manifold alone would go back to the base.
+    few labels then decide frames unlike any of them, where the manifold alone would go back to the base.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def from_labels(
     settings: Settings | None = None,
     *,
     source: Array | None = None,
-    tell: Tell = silent,
+    progress: Progress = ignore,
 ) -> Labelled:
     """Return the take as a target with shapes plays it, given the target's weights at a few frames.
 
@@ -202,7 +202,7 @@ def from_labels(
     take : the target's weights as they would be with no labels
     labels : by frame; a shape that is not named, or NaN, stays as the take has it there
     source : (frames, D) what tells frames apart, zero where the source is at rest; the take's weights without it
-    tell : is told the share that is done, 0..1; it may raise, to stop
+    progress : called with the share that is done, 0..1; it may raise, to stop
     """
     frames = np.array(sorted(labels), np.int64)
     _require_within(frames, len(take))
@@ -210,7 +210,7 @@ def from_labels(
     asked = np.where(np.isnan(poses), take.weights[frames], poses)[..., None]
     points, rest = take.weights if source is None else source, np.zeros((len(SHAPES), 1))
     made, uncertainty = _between_rest_and_labels(
-        points, take.weights[..., None], rest, frames=frames, labels=asked, settings=settings, tell=tell
+        points, take.weights[..., None], rest, frames=frames, labels=asked, settings=settings, progress=progress
     )
     low, high = np.minimum(take.weights.min(axis=0), 0.0), np.maximum(take.weights.max(axis=0), 1.0)
     return Labelled(take.with_weights(np.clip(made[..., 0], low, high)), uncertainty)
@@ -231,7 +231,7 @@ def _between_rest_and_labels(
     frames: Indices,
     labels: Array,
     settings: Settings | None,
-    tell: Tell = silent,
+    progress: Progress = ignore,
 ) -> tuple[Array, Array]:
     """Return the target, (frames, n, d), and how loosely each frame is held, of a source that is zero at rest.
 
@@ -240,7 +240,7 @@ def _between_rest_and_labels(
     _require_within(frames, len(base))
     guess = np.concatenate([scaled_to(base, rest, frames, labels), rest[None]]).reshape(len(base) + 1, -1)
     points = np.vstack([source.reshape(len(source), -1), np.zeros((1, source[0].size))])
-    retargeter = Retargeter(points, guess, np.append(frames, len(base)), settings or Settings(), tell)
+    retargeter = Retargeter(points, guess, np.append(frames, len(base)), settings or Settings(), progress)
     made = retargeter.solve(np.vstack([labels.reshape(len(frames), -1), rest.reshape(1, -1)]))
     return made[:-1].reshape(base.shape), retargeter.uncertainty()[:-1]
 

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicHermiteSpline, make_smoothing_spline
 from scipy.linalg import solveh_banded
 
 from engine.inpaint.gap import Gap
-from engine.inpaint.seams import land
+from engine.inpaint.seams import constrain
 from engine.lab.corpus import Piece
 from engine.take import SHAPES, Array
 
@@ -146,7 +146,7 @@ class Nearest:
             return linear(gap)
         made = gap.known.copy()
         made[first:last] = segment
-        made = land(made, gap.known)
+        made = constrain(made, gap.known)
         return np.where(free, np.clip(made, 0.0, 1.0), gap.known)
 
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from engine.controls import bundled_measurer
 from engine.errors import EngineError
-from engine.inpaint.fill import BRIDGE_S
+from engine.inpaint import fill as filling
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler, bundled, load
 from engine.inpaint.regions import REGIONS
-from engine.inpaint.seams import bridged
+from engine.inpaint.seams import bridge_weights
 from engine.lab.corpus import Piece, data_folder, pieces_to_measure, rest_of, split
 from engine.lab.evaluate.inpaint import baselines as spans
 from engine.lab.evaluate.inpaint import motion
@@ -94,10 +94,10 @@ def holes(pieces: Sequence[Piece], frames: int, most: int = MOST) -> list[Hole]:
 
 def guided(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
     """Return what is known of a hole with one kind of guidance taken from the truth, and the rest of its take."""
-    return replace(_told(hole, kind, rng), rest=hole.rest)
+    return replace(_with_guidance(hole, kind, rng), rest=hole.rest)
 
 
-def _told(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
+def _with_guidance(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
     known = np.where(hole.mask, np.nan, hole.truth)
     if kind == "keyframes":
         step = round(KEYFRAME_S * MODEL_FPS)
@@ -115,12 +115,12 @@ def _told(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
 
 
 def network(filler: Filler) -> Method:
-    """Return how the product fills: short holes without steering are bridged, all others performed."""
+    """Return how the product fills: short holes without steering are interpolated, all others generated."""
 
     def make(gap: Gap) -> Array:
         steered = np.isfinite(gap.guide).any() or np.isfinite(gap.controls).any() or gap.visemes.any()
-        short = np.isnan(gap.known).any(axis=1).sum() <= BRIDGE_S * MODEL_FPS
-        return bridged(gap.known) if short and not steered else filler.fill(gap)[0]
+        short = np.isnan(gap.known).any(axis=1).sum() <= filling.TUNING.bridge_s * MODEL_FPS
+        return bridge_weights(gap.known) if short and not steered else filler.fill(gap)[0]
 
     return make
 

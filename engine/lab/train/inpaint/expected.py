@@ -12,7 +12,7 @@ import torch
 from torch.nn.functional import mse_loss
 
 from engine.controls import CONTROL_INDEX, CONTROLS, FEW, bundled_measurer
-from engine.inpaint.expected import MEMBERS, Expected
+from engine.inpaint.expected import TUNING, Expected
 from engine.lab.corpus import Piece, split, whole_faces
 from engine.lab.reporting import Report
 from engine.lab.train import loop
@@ -30,7 +30,7 @@ class Settings:
     """What a training run depends on; chosen on validation takes."""
 
     seed: int = 0
-    members: int = MEMBERS
+    members: int = TUNING.members
     steps: int = 1500  # of each member
     frames: int = 64
     batch: int = 64
@@ -186,7 +186,7 @@ def validation_errors(network: Expected, pieces: Sequence[Piece]) -> dict[str, d
         off = []
         for piece in whole_faces(pieces):
             measured = bundled_measurer().measure(piece.weights)
-            made = network.face(np.where(np.isin(list(CONTROL_INDEX), chosen), measured, np.nan))
+            made = network.pose(np.where(np.isin(list(CONTROL_INDEX), chosen), measured, np.nan))
             off.append((made - piece.weights) ** 2)
         errors[name] = {"mse": round(float(np.concatenate(off).mean()), 5)}
     return errors
