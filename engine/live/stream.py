@@ -53,7 +53,7 @@ class Arrival:
 
     Attributes
     ----------
-    weights : (52,) float32; None where the phone saw no face or said what no face can
+    weights : (52,) float32; None where the phone saw no face or sent implausible weights
     late : whether a newer frame had come before it
     """
 
@@ -159,7 +159,7 @@ class Stream:
     def _follows(self, subject: str, arrived_s: float) -> bool:
         """Return whether a subject is the one that is followed: the first, or another that sends where that fell silent.
 
-        While a recording is made, and where the user chose, the subject stays.
+        During a recording, and where the user chose, the subject stays.
         """
         self._hear(subject, arrived_s)
         if self.subject is None:

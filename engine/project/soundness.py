@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 
 from engine.project.blobs import DamagedError
 from engine.project.records import Edit, Marks, Media, Pin, Span
-from engine.project.replaying import said
+from engine.project.replaying import visemes_after
 from engine.project.reviewing import Drawing, Note, Reply, Verdict
 from engine.quality.settings import Dismissal, FlagSettings
 from engine.take import SHAPE_INDEX
@@ -57,7 +57,7 @@ def require_verdict(verdict: Verdict) -> None:
 def require_visemes(edits: tuple[Edit, ...]) -> None:
     """Raise `DamagedError` where a step on the visemes does not fit the lane that it finds."""
     try:
-        said(edits)
+        visemes_after(edits)
     except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
         raise DamagedError("an edit does not say what it did to the visemes") from error
 

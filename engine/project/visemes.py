@@ -119,7 +119,7 @@ def _cue(start_s: object, stop_s: object, label: object) -> Cue:
 def _require_order(lane: VisemeLane | None, at: int, count: int) -> None:
     """Check the cues that a step put in place, and those beside them; the others were checked before."""
     cues = lane.cues[max(0, at - 1) : at + count + 1] if lane is not None else ()
-    if any(one.stop_s > other.start_s for one, other in pairwise(cues)):
+    if any(cue.stop_s > following.start_s for cue, following in pairwise(cues)):
         raise ValueError("cues overlap")
 
 

@@ -51,7 +51,7 @@ def _level(seen: Seen, frames: Indices) -> Mask:
 
 
 def _shut_before(seen: Seen) -> list[int]:
-    """Return the frames at which blinks were shut before the edits, and nobody has asked anything of the lids since."""
+    """Return the frames at which blinks were shut before the edits and the lids have no target since."""
     if seen.original_controls is None:
         return []
     before = rounded(np.max([seen.original_controls[:, control] for control in LIDS.values()], axis=0))

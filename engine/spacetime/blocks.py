@@ -53,7 +53,7 @@ class BlockCholesky:
                 self._kept.append(self._factorise(index))
 
     def _factorise(self, index: int) -> tuple[Array, Array]:
-        """Return inverted pivots, (k, m, m), and gains ``C P^-1``, (k, m, m), of one chunk, and store the pivot that enters the next."""
+        """Return inverted pivots, (k, m, m), and gains ``C P^-1``, (k, m, m), of a chunk; store the pivot that enters the next."""
         start = self._starts[index]
         diagonal, coupling = self._masked(start, min(start + TUNING.chunk_frames, self._frames))
         inverses, gains = np.empty_like(diagonal), np.empty_like(diagonal)
