@@ -55,11 +55,11 @@ def validation_figures(filler: Filler, pieces: Sequence[Piece], others: Sequence
 
 
 def _figures(pairs: Sequence[tuple[Array, Mask, Array]]) -> dict[str, float]:
-    off = np.concatenate([np.abs(made - truth)[hole] for truth, hole, made in pairs])
-    moved = np.concatenate([np.abs(np.diff(made - truth, axis=0))[hole[1:]] for truth, hole, made in pairs])
-    cut = [(truth[hole.any(axis=1)], made[hole.any(axis=1)]) for truth, hole, made in pairs]
+    off = np.concatenate([np.abs(result - truth)[hole] for truth, hole, result in pairs])
+    moved = np.concatenate([np.abs(np.diff(result - truth, axis=0))[hole[1:]] for truth, hole, result in pairs])
+    cut = [(truth[hole.any(axis=1)], result[hole.any(axis=1)]) for truth, hole, result in pairs]
     return {
         "mae": float(off.mean()),
         "velocity_mae": float(moved.mean()),
-        "npss": npss([truth for truth, _ in cut], [made for _, made in cut]),
+        "npss": npss([truth for truth, _ in cut], [result for _, result in cut]),
     }
