@@ -11,7 +11,7 @@ from safetensors.torch import load_file, save_file
 from engine.errors import AssetError
 from engine.inpaint import infer
 from engine.inpaint.gap import Gap, gap_of
-from engine.inpaint.infer import AT_REST, Filler, bundled, load, save_filler
+from engine.inpaint.infer import TUNING, Filler, bundled, load, save_filler
 from engine.lab.performer import demo
 from engine.lab.performer.performer import perform
 
@@ -55,10 +55,12 @@ def test_variants_lie_farther_apart_the_livelier_they_are(gap: Gap, monkeypatch:
 
 def test_what_is_pulled_below_nought_ends_near_it_and_keeps_moving() -> None:
     weights = np.linspace(-1.0, 1.0, 201)
-    found = infer._above_rest(weights)
-    np.testing.assert_allclose(found * (found - weights), AT_REST**2 / 4, atol=1e-12)  # a hyperbola along both lines
+    found = infer._soft_clip(weights)
+    np.testing.assert_allclose(
+        found * (found - weights), TUNING.soft_clip**2 / 4, atol=1e-12
+    )  # a hyperbola along both lines
     assert (found > np.maximum(weights, 0)).all() and (np.diff(found) > 0).all()
-    assert found[100] == AT_REST / 2 and found[-1] == pytest.approx(1.0, abs=AT_REST**2)
+    assert found[100] == TUNING.soft_clip / 2 and found[-1] == pytest.approx(1.0, abs=TUNING.soft_clip**2)
 
 
 def test_a_filler_that_was_stored_fills_alike(gap: Gap, tmp_path: Path) -> None:

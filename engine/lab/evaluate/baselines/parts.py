@@ -58,11 +58,11 @@ class Areas:
     def infer(self, controls: Array) -> Array:
         """Return weights, (frames, 52), of controls, (frames, 8 or 16); shapes of no area are zero."""
         frames = len(controls)
-        held = np.pad(controls, ((0, -frames % self._alignment), (0, 0)), mode="edge")
+        padded = np.pad(controls, ((0, -frames % self._alignment), (0, 0)), mode="edge")
         weights = np.zeros((frames, len(SHAPES)))
         with torch.inference_mode():
             for area in AREAS:
-                curves = torch.from_numpy(held[:, columns_of(area, every=self._every)].T.astype(np.float32))
+                curves = torch.from_numpy(padded[:, columns_of(area, every=self._every)].T.astype(np.float32))
                 weights[:, area.shape_columns] = self.modules[area.name](curves[None])[0].numpy().T[:frames]
         return weights
 
