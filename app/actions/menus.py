@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, QPoint, Qt
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QMainWindow, QMenu, QToolButton
 
-from app.actions.table import ACTIONS, CONTEXT, LINES, MENUS, TOOLBAR, all_keys
+from app.actions.table import ACTIONS, CONTEXT, LINES, MENUS, TOOLBAR, Action, all_keys
 from app.settings import PRESETS, Settings
 from app.theme import GRID
 from app.widgets.hints import Hints
@@ -49,11 +49,12 @@ class Menus(QObject):
         self._menus: dict[str, QMenu] = {}
         for title in MENUS:
             menu = self._menus[title] = window.menuBar().addMenu(title)
+            within: dict[str, QMenu] = {}
             for entry in ACTIONS:
                 if entry.menu == title:
                     if entry.name in LINES:
                         menu.addSeparator()
-                    menu.addAction(self.actions[entry.name])
+                    _menu_of(entry, menu, within).addAction(self.actions[entry.name])
         self._recent = QMenu("Open recent", window)
         self._menus["File"].insertMenu(self.actions["save"], self._recent)
         self._recent.aboutToShow.connect(self._fill_recent)
@@ -109,12 +110,14 @@ class Menus(QObject):
             menu.addAction(caption(told)).setEnabled(False)
             menu.addSeparator()
         listed: set[str] = set()
+        within: dict[str, QMenu] = {}
+        entries = {entry.name: entry for entry in ACTIONS}
         for kind in kinds:
             for name in CONTEXT[kind]:
                 if not name:
                     menu.addSeparator()
                 elif name not in listed:
-                    menu.addAction(self.actions[name])
+                    _menu_of(entries[name], menu, within).addAction(self.actions[name])
                     listed.add(name)
             menu.addSeparator()
         menu.popup(at)
@@ -145,3 +148,12 @@ class Menus(QObject):
                 row.addWidget(button)
         row.addWidget(self.hints, 1)
         return bar
+
+
+def _menu_of(entry: Action, menu: QMenu, within: dict[str, QMenu]) -> QMenu:
+    """Return the menu that an action goes into: `menu`, or the one inside it that the table names."""
+    if not entry.submenu:
+        return menu
+    if entry.submenu not in within:
+        within[entry.submenu] = menu.addMenu(entry.submenu)
+    return within[entry.submenu]

@@ -76,7 +76,10 @@ def retarget(
     ] = Method.SPACETIME,
     labels: Annotated[Path | None, typer.Option(help=labelled.LABEL_HELP)] = None,
     suggest: Annotated[int | None, typer.Option(help=labelled.SUGGEST_HELP)] = None,
-    character: Annotated[Path | None, typer.Option(help="The character to move; the bundled head otherwise.")] = None,
+    character: Annotated[
+        Path | None,
+        typer.Option(help="The head to move, or second; the Retake head without."),
+    ] = None,
     landmarks: Annotated[
         Path | None, typer.Option(help="Which vertex carries which marker: a CSV of marker,vertex.")
     ] = None,
@@ -91,7 +94,7 @@ def retarget(
     write_sides: WrittenSides = SAME,
     marker: Annotated[list[str] | None, typer.Option("--marker", help=MARKER_HELP)] = None,
 ) -> None:
-    """Carry markers or a take to another character."""
+    """Retarget markers or a take to another head."""
     _require_sense(method, labelled=labels is not None or suggest is not None, out=out, suggests=suggest is not None)
     performance = performance_of(
         source, neutral=neutral, unit=unit, fps=fps, sides=sides, marker=marker, placed=landmarks is not None

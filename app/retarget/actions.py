@@ -19,6 +19,7 @@ from app.session import Session
 from app.widgets.saving import ask_where, beside
 from app.widgets.section import Section
 from engine.errors import EngineError
+from engine.formats.characters.opening import SECOND
 
 HEADS = "Heads (*.npz *.glb *.gltf *.vrm *.obj *.ply *.stl)"
 CAPTURES = "Markers (*.csv *.tsv *.trc *.c3d)"
@@ -103,7 +104,7 @@ class RetargetActions(QObject):
 
     def open_markers(self) -> None:
         """Choose a capture to carry."""
-        self._with_file("Markers to carry", CAPTURES, self.retargeting.choosing.open_markers)
+        self._with_file("Markers to retarget", CAPTURES, self.retargeting.choosing.open_markers)
 
     def choose_target(self) -> None:
         """Choose the head to carry to."""
@@ -120,6 +121,11 @@ class RetargetActions(QObject):
         """Carry to Retake's own head."""
         self.retarget_tool()
         self.retargeting.choosing.choose_target(None)
+
+    def second_target(self) -> None:
+        """Retarget to the second bundled head."""
+        self.retarget_tool()
+        self.retargeting.choosing.choose_target(SECOND)
 
     def carry(self) -> None:
         """Solve the whole take."""
@@ -154,7 +160,7 @@ class RetargetActions(QObject):
         """Go to the frame that the labels tell least of."""
         frame = self.labelling.loosest
         if frame is None:
-            self.failed.emit("Nothing was solved from labels yet.", "Label some frames and solve; then it can be told.")
+            self.failed.emit("Nothing was solved from labels yet.", "Label some frames and solve first.")
         else:
             self._session.view.move_playhead(frame)
 

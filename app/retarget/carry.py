@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.session.heads import HeadFile, read_head
 from engine.character import Character, bundled
 from engine.editing import Matching, RetargetRequest, standard_places
 from engine.errors import EditError
@@ -72,20 +73,11 @@ def posed(weights: Array, pose: Pose) -> Array:
 
 def opened(path: Path | None, reading: Reading | None = None) -> Target:
     """Return a head, read as corrected, with its 54 markers placed; with none where it lacks the landmarks for them."""
-    from engine.formats.characters.opening import character_of, is_own
-    from engine.formats.characters.reading import import_head
-
-    reading, imported = reading or Reading(), None
-    if path is None:
-        head = bundled()
-    elif is_own(path):
-        head = replace(character_of(path), name=path.stem)
-    else:
-        imported = import_head(path, reading)
-        head = replace(imported.character, name=path.stem)
-    target = Target(head, path, reading, imported)
+    reading = reading or Reading()
+    read = HeadFile(bundled()) if path is None else read_head(path, reading)
+    target = Target(read.head, path, reading, read.imported)
     try:
-        return replace(target, places=standard_places(head))
+        return replace(target, places=standard_places(read.head))
     except EditError:
         return target
 

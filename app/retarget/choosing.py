@@ -34,7 +34,6 @@ class Choosing(QObject):
     """
 
     capture_opened = Signal(object)  # a Take of the capture's length
-    head_read = Signal(object)  # the head to show the take on, or None for the bundled one
     told = Signal(str)  # what is being read, or nothing
 
     def __init__(self, session: Session, retargeting: Retargeting) -> None:
@@ -67,7 +66,7 @@ class Choosing(QObject):
 
         `reading` is what a person corrected about it: its markers by hand and its labels stay then.
         """
-        name = path.name if path else bundled().name
+        name = _title(path) if path else bundled().name
         before, capture = self._retargeting.target, self._retargeting.capture
 
         def work() -> Target:
@@ -79,7 +78,7 @@ class Choosing(QObject):
             found = found if labels is None else replace(found, labels=labels)
             return found if capture is None else with_markers(found, capture, before.markers)
 
-        title = f"carry to {name}" if reading is None else f"read {name} anew"
+        title = f"retarget to {name}" if reading is None else f"read {name} again"
         self.refused = None
         self._open(
             name, work, lambda target: self._retargeting.change_target(target, title), (path, reading or Reading())
@@ -94,12 +93,12 @@ class Choosing(QObject):
 
     def show_on(self, path: Path | None) -> None:
         """Read a head to show the take on, None for the bundled one; it is the target where the user chose no other."""
-        self.told.emit(f"reading {path.name}…" if path else "")
+        self.told.emit(f"reading {_title(path)}…" if path else "")
         self._retargeting.submit_short(lambda: opened(path) if path else Target(), self._take_shown, "head")
 
     def _take_shown(self, offer: Target) -> None:
         self.told.emit("")
-        self.head_read.emit(offer.head)
+        self._session.view.show_on(offer.head)
         state = self._retargeting
         target = state.target
         touched = target.head is not self._offered or target.labels or target.by_hand or state.result is not None
@@ -149,3 +148,9 @@ class Choosing(QObject):
         if self.opening and self._head is not None and self._head[0] is not None:
             self.refused = self._head[0], self._head[1]
         self.opening, self._head = "", None
+
+
+def _title(path: Path) -> str:
+    from engine.formats.characters.opening import SECOND_TITLE, is_second
+
+    return SECOND_TITLE if is_second(path) else path.name

@@ -1,4 +1,4 @@
-"""How the target head was read: what its shapes were taken for, its unit and its axes, each to be corrected."""
+"""How the target head was read: the meaning of its shapes, its unit and its axes, each to be corrected."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class HeadSection(Section):
 
     Attributes
     ----------
-    table : the file's names, and a box with what each is taken for
+    table : the file's names, and a box with the meaning of each
     boxes : the boxes, by the file's name
     all_shapes : whether those without doubt are listed too
     unit, up, facing : of the file
@@ -41,7 +41,7 @@ class HeadSection(Section):
     tools = frozenset({"retarget"})
 
     def __init__(self, session: Session, retargeting: Retargeting) -> None:
-        super().__init__(session, "Head as read")
+        super().__init__(session, "Imported head")
         self._retargeting = retargeting
         self._facts = quiet("")
         self.column.addWidget(self._facts)
@@ -58,7 +58,7 @@ class HeadSection(Section):
         self.up.activated.connect(lambda _: retargeting.choosing.read_anew(up=_chosen(self.up)))
         self.facing.activated.connect(lambda _: retargeting.choosing.read_anew(facing_deg=_degrees(self.facing)))
         self.table = QTableWidget(0, 2)
-        self.table.setHorizontalHeaderLabels(["In the file", "Taken for"])
+        self.table.setHorizontalHeaderLabels(["In the file", "Meaning"])
         self.table.setAccessibleName("Shapes of the head")
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(ROW_PX)
@@ -100,7 +100,7 @@ class HeadSection(Section):
         if made is None:
             return
         rows = made.matches if self.all_shapes.isChecked() else reviewed(made.matches)
-        counts = f"{sum(row.sure for row in made.matches)} of {counted(len(made.matches), 'shape')} taken."
+        counts = f"{sum(row.sure for row in made.matches)} of {counted(len(made.matches), 'shape')} matched."
         self._facts.setText(" ".join([counts, *made.notices]))
         self.table.setVisible(bool(rows))
         self._list(tuple(rows))
@@ -116,7 +116,7 @@ class HeadSection(Section):
             item = QTableWidgetItem(row.source)
             item.setToolTip(row.how)
             self.table.setItem(number, 0, item)
-            box = self.boxes[row.source] = _box(f"What {row.source[:60]} is taken for", (LEFT_OUT, *SHAPES))
+            box = self.boxes[row.source] = _box(f"Meaning of {row.source[:60]}", (LEFT_OUT, *SHAPES))
             box.setCurrentText(row.shape if row.sure else LEFT_OUT)
             box.setToolTip(row.how)
             box.activated.connect(lambda _, name=row.source: self._take(name))

@@ -13,12 +13,12 @@ from app.background import LatestWins
 from app.retarget.carry import Errand, Target, posed
 from app.retarget.choosing import Choosing
 from app.retarget.commands import TargetCommand
-from app.retarget.kept import KeptHeads
 from app.retarget.live import LiveFrames
 from app.retarget.solving import KIND, LABELS, MOVEMENT, carry_out, whole
 from app.session import Change, Session
 from app.session.asked import Asked
 from app.session.edits import Runner
+from app.session.heads import KeptHeads
 from engine.character import bundled
 from engine.editing import MARKERS, Matching, Performance, Retargeted
 from engine.take import SHAPES, Array
@@ -179,10 +179,10 @@ class Retargeting(QObject):
     def solve(self) -> None:
         """Carry the whole take."""
         if not self.ready:
-            self.failed.emit("There is no other head to carry the take to.", "Choose a target in the Retarget panel.")
+            self.failed.emit("There is no other head to retarget to.", "Choose a head in the Retarget panel.")
             return
         if self.method == LABELS and not self.target.labels:
-            self.failed.emit("No frame is labelled yet.", "Suggest frames, pose the target at each, and label it.")
+            self.failed.emit("No frame is labelled yet.", "Suggest frames, pose the head at each, and label it.")
             return
         self.cancel()
         self.share = 0.0

@@ -30,7 +30,7 @@ def whole(performance: Performance, target: Target, matching: Matching, method: 
         "reading": target.reading.stored(),
     }
     request = LabelRequest(target.labels, movement) if method == LABELS else movement
-    return Asked(KIND, request, performance, f"carry to {movement.head.name}", also=also)
+    return Asked(KIND, request, performance, f"retarget to {movement.head.name}", also=also)
 
 
 def carry_out(asked: Asked, tell: Tell) -> Retargeted:

@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, Signal
 from app.session.changes import Change
 from app.session.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from app.session.document import Document
+from engine.character import Character
 from engine.controls import CONTROLS
 from engine.editing import DEFAULT_BELIEVABILITY
 
@@ -35,6 +36,7 @@ class View(QObject):
     radius_s, strength : the brush: to how far on either side it reaches, and its share of what is pulled
     believability : of edits, 0 where they go wherever curves are pulled, 1 where they do only what was recorded
     shows_removed : whether the Clean tool draws what it would remove
+    head : the head that the take is shown on; None for the bundled one
     """
 
     changed = Signal(object)  # a Change; the session passes it on
@@ -44,6 +46,7 @@ class View(QObject):
         self._document = document
         self.strength, self.believability, self.tool = 1.0, DEFAULT_BELIEVABILITY, "drag"
         self.shows_removed = True
+        self.head: Character | None = None
         self.reset()
 
     def reset(self) -> None:
@@ -134,6 +137,14 @@ class View(QObject):
             elif shown:
                 self.lane = control
             self.changed.emit(Change.LANES | Change.LANE)
+
+    # --- the face
+
+    def show_on(self, head: Character | None) -> None:
+        """Show the take on another head; None is the bundled one."""
+        if head is not self.head:
+            self.head = head
+            self.changed.emit(Change.HEAD)
 
     # --- tools
 

@@ -75,7 +75,7 @@ class SpansSection(Section):
         self.accept_button, self.again_button, self.drop_button = (
             QPushButton("Keep"),
             QPushButton("Others"),
-            QPushButton("Drop"),
+            QPushButton("Discard"),
         )
         self.accept_button.setProperty("primary", True)
         self.accept_button.setToolTip("Keep this variant (Enter)")

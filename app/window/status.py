@@ -114,7 +114,7 @@ class StatusBar(QFrame):
     def timed(self, spent_ms: float) -> None:
         """Tell how long it took from the mouse to the picture."""
         self._latencies_ms = [*self._latencies_ms[1 - LATENCIES :], spent_ms]
-        self["speed"].setText(f"drag → preview {np.median(self._latencies_ms):.0f} ms")
+        self["speed"].setText(f"preview {np.median(self._latencies_ms):.0f} ms")
 
     def _on_change(self, change: Change) -> None:
         if change & Change.READING:

@@ -108,7 +108,6 @@ def _retarget(window: MainWindow) -> Rows:
         (window.preview.dot_clicked, window.retarget.placing.choose),
         (window.files.capture_dropped, window.retarget.take_in),
         (window.files.character_chosen, retargeting.choosing.show_on),
-        (retargeting.choosing.head_read, window.preview.show_character),
         (retargeting.choosing.told, window.status.hold),
     )
 

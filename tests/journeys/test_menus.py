@@ -168,7 +168,7 @@ def test_the_face_is_seen_as_recorded_and_a_right_drag_still_pans(qtbot: QtBot, 
     QTest.mouseClick(face, Qt.MouseButton.RightButton, pos=middle)
     menu = window._contexts.menu
     assert menu is not None
-    chosen(qtbot, window, menu, "See the face as recorded")
+    chosen(qtbot, window, menu, "Show the recorded face")
     assert face.view == "Before" and window.actions_by_name["view_before"].isChecked()
     before = face.camera
     QTest.mousePress(face, Qt.MouseButton.RightButton, pos=middle)

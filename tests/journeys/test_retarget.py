@@ -105,7 +105,7 @@ def test_a_take_is_carried_to_another_head_and_back(
     np.testing.assert_array_equal(session.document.take.weights, session.document.original.weights)
     QTest.keyClick(window, Qt.Key.Key_Return, CONTROL | SHIFT)
     qtbot.waitUntil(lambda: session.document.undo.count() == steps + 1, timeout=20_000)
-    assert session.document.undo.undoText() == "carry to broad"
+    assert session.document.undo.undoText() == "retarget to broad"
     assert (
         session.document.take.weights != session.document.original.weights
     ).any() and session.document.character is not None
