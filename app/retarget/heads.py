@@ -20,6 +20,7 @@ LEFT_OUT = "left out"
 FOUND = "as found"
 FACINGS = tuple(str(turn) for turn in (0, 45, 90, 135, 180, -135, -90, -45))
 TABLE_PX, ROW_PX = 210, 24
+MEANING_PX = 116  # of the column with the boxes
 
 
 class HeadSection(Section):
@@ -62,7 +63,10 @@ class HeadSection(Section):
         self.table.setAccessibleName("Shapes of the head")
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(ROW_PX)
-        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        header = self.table.horizontalHeader()
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        header.setSectionResizeMode(1, QHeaderView.ResizeMode.Fixed)
+        header.resizeSection(1, MEANING_PX)
         self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
         self.column.addWidget(self.table)
         self.all_shapes = QCheckBox("List all shapes")

@@ -115,6 +115,10 @@ class SpansSection(Section):
         self.fill_button.setProperty("primary", True)
         self.fill_button.setToolTip("Fill the chosen span (F)")
         self.note = quiet("")
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.fill_button, 1)
+        buttons.addWidget(self.remove_button, 1)
+        box.addLayout(buttons)  # above the settings: beneath them a low screen has no room
         for widget in (
             self.region,
             self.style_box,
@@ -123,8 +127,6 @@ class SpansSection(Section):
             self.guide_button,
             self.unguide_button,
             self._shift_row,
-            self.fill_button,
-            self.remove_button,
             self.note,
         ):
             box.addWidget(widget)

@@ -63,7 +63,7 @@ class MainWindow(WindowParts):
         self.preferences.apply_all()
         self.resize(DESIGNED.boundedTo(self.screen().availableSize()))
         self.session.open(take, path)
-        self.files.imported = imported(take)
+        self.files.opener.imported = imported(take)
         self.show_opened()
 
     def do(self, name: str) -> None:
@@ -106,7 +106,7 @@ class MainWindow(WindowParts):
         self._show_title()
         self.status.show_take()
         from_file = self.keeper.path is None and self.session.document.path not in (None, DEMO_TAKE)
-        self.importing.tell(self.files.imported, shown=from_file)
+        self.importing.tell(self.files.opener.imported, shown=from_file)
         there = from_file and self.importing.there  # it has what was noticed
         self.status.tell("" if there else " ".join(self.session.document.take.notices))
         self.show_importing()
@@ -145,7 +145,7 @@ class MainWindow(WindowParts):
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask for unsaved edits, wait until all is written, then end the threads."""
         if not self.closed:
-            self.files.when_safe(self._leave)
+            self.files.opener.when_safe(self._leave)
         event.setAccepted(self.closed)
 
     def _leave(self) -> None:
@@ -160,7 +160,7 @@ class MainWindow(WindowParts):
         self._focus.let_go()
         self.transport.run(0.0)
         self.session.document.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
-        self.files.opening.close()
+        self.files.opener.opening.close()
         self.keeper.close()
         self.inference.close()
         self.media.close()

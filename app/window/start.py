@@ -34,7 +34,7 @@ def start(path: Path | None) -> int:
     window = MainWindow(read_take(DEMO_TAKE), DEMO_TAKE)
     _report_to(window)
     if path is not None:
-        window.files.opening.failed.connect(lambda *_: _tell_what_is_open(window))
+        window.files.opener.opening.failed.connect(lambda *_: _tell_what_is_open(window))
         window.load(path)
     window.show()
     QTimer.singleShot(0, window.files.offer_left_over)

@@ -30,7 +30,7 @@ def connect(window: MainWindow) -> None:
     for signed in (window.notes, window.flags, window.review.verdict):
         signed.author = window.author
     window.notes.drawn = window.preview.drawn
-    window.review.open_take, window.review.load = window.files.open_then, window.files.load
+    window.review.open_take, window.review.load = window.files.opener.open_take, window.files.load
 
 
 def _notices(window: MainWindow) -> Rows:

@@ -8,6 +8,7 @@ import pytest
 from app.session import RADII_S, Change, Document, View
 from app.session.curve_table import FIRST_WEIGHT, weights_under
 from app.session.view import BRUSH_S, FIRST_VIEW_S
+from engine.character import bundled
 from engine.controls import CONTROLS
 from engine.take import SHAPES, Take
 
@@ -122,3 +123,14 @@ def test_another_take_is_looked_at_anew_with_the_same_tool(view: View) -> None:
     view.reset()
     assert (view.playhead, view.selection, view.radius_s) == (0, None, BRUSH_S)
     assert (view.tool, view.strength) == ("scale", 0.5)
+
+
+def test_the_head_that_is_shown_is_told_once_and_stays_with_another_take(view: View, told: list[Change]) -> None:
+    head = bundled()
+    view.show_on(head)
+    view.show_on(head)
+    assert view.head is head and told == [Change.HEAD]
+    view.reset()
+    assert view.head is head
+    view.show_on(None)
+    assert view.head is None and told == [Change.HEAD] * 2
