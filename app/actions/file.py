@@ -56,7 +56,7 @@ class FileActions(QObject):
     opener : opens what was chosen
     """
 
-    told = Signal(str, str)  # sentence, advice
+    message = Signal(str, str)  # sentence, advice
     wrote = Signal(str, str)  # what was written, and what the file cannot hold
     opened = Signal()
     capture_dropped = Signal(object)  # the path of a file of markers
@@ -67,7 +67,7 @@ class FileActions(QObject):
         super().__init__()
         self._session, self._keeper, self._media = session, keeper, media
         self.opener = Opener(session, keeper, settings, window, self.save)
-        self.opener.failed.connect(self.told)
+        self.opener.failed.connect(self.message)
         self.opener.opened.connect(self.opened)
         self._settings, self._window = settings, window
         keeper.saved.connect(settings.remember)
@@ -133,7 +133,7 @@ class FileActions(QObject):
         try:
             write_take(self._session.document.take, path, EXPORTS.get(kind, "automatic"))
         except EngineError as error:
-            self.told.emit(error.sentence, error.advice)
+            self.message.emit(error.sentence, error.advice)
             return False
         self._settings.remember(path)
         saved = self._keeper.path is not None and not self._session.document.edited
@@ -179,7 +179,7 @@ class FileActions(QObject):
                 for entry in left:
                     self._keeper.discard(entry)
             except EngineError as error:
-                self.told.emit(error.sentence, error.advice)
+                self.message.emit(error.sentence, error.advice)
 
     def _save_to(self, path: Path) -> bool:
         self._media.settle_in(path.parent)

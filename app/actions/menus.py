@@ -102,12 +102,12 @@ class Menus(QObject):
             entry.triggered.connect(partial(self._load, Path(name)))
         self._recent.setEnabled(bool(self._settings.recent))
 
-    def open_context(self, kinds: Sequence[str], at: QPoint, told: str = "") -> QMenu:
+    def open_context(self, kinds: Sequence[str], at: QPoint, heading: str = "") -> QMenu:
         """Offer what can be done with what lies at a point of the screen, kinds of `CONTEXT`, and say what it is."""
         menu = QMenu(self._window)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        if told:
-            menu.addAction(caption(told)).setEnabled(False)
+        if heading:
+            menu.addAction(caption(heading)).setEnabled(False)
             menu.addSeparator()
         listed: set[str] = set()
         within: dict[str, QMenu] = {}

@@ -42,23 +42,23 @@ def import_(
     landmarks: Landmarks = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Make a character of another program's head, and show what each of its shapes was taken for."""
+    """Import a head of another program as a character, and list the meaning of each of its shapes."""
     from app.cli.tables import show
     from engine.character import save
 
-    made = imported(path, unit=unit, up=up, facing=facing, names=names or [], landmarks=landmarks or [])
-    save(made.character, out)
+    read = imported(path, unit=unit, up=up, facing=facing, names=names or [], landmarks=landmarks or [])
+    save(read.character, out)
     if as_json:
-        print_json(_summary(made))
+        print_json(_summary(read))
         return
     rows = [
         {"in the file": row.source, "shape": row.shape if row.sure else "", "how": row.how, "likeness": row.likeness}
-        for row in made.matches
+        for row in read.matches
     ]
     show(path.name, rows, as_json=False)
-    for notice in made.notices:
+    for notice in read.notices:
         say(notice)
-    say(f"Imported {counted(len(made.character.neutral), 'vertex', 'vertices')}. Written to {out}.")
+    say(f"Imported {counted(len(read.character.neutral), 'vertex', 'vertices')}. Written to {out}.")
 
 
 def landmarks_(
@@ -100,18 +100,18 @@ def imported(
     return import_head(path, Reading(unit or "", up or "", facing, pairs(list(names))), places)
 
 
-def _summary(made: Import) -> dict[str, object]:
+def _summary(read: Import) -> dict[str, object]:
     return {
-        "vertices": len(made.character.neutral),
-        "unit": made.frame.unit,
-        "up": made.frame.up,
-        "facing_deg": made.frame.facing_deg,
+        "vertices": len(read.character.neutral),
+        "unit": read.frame.unit,
+        "up": read.frame.up,
+        "facing_deg": read.frame.facing_deg,
         "shapes": [
-            {"source": row.source, "shape": row.shape, "likeness": row.likeness, "how": row.how} for row in made.matches
+            {"source": row.source, "shape": row.shape, "likeness": row.likeness, "how": row.how} for row in read.matches
         ],
-        "landmarks": made.character.landmarks,
-        "landmark_mm": made.landmark_mm,
-        "notices": list(made.notices),
+        "landmarks": read.character.landmarks,
+        "landmark_mm": read.landmark_mm,
+        "notices": list(read.notices),
     }
 
 

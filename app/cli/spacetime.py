@@ -61,9 +61,9 @@ def pin(
         named = {**dict(zip(SHAPES, pose.tolist(), strict=True)), **named}
     if not named:
         raise EditError("The pin has no pose.", "Name weights with --weights or controls with --control.")
-    held = None if closure is None else _strength("closure", closure)
+    strength = None if closure is None else _strength("closure", closure)
     chosen = editing.parse_frames(frames, source)
-    asked = editing.PinRequest({frame: named}, chosen, whole=not free, closure=held)
+    asked = editing.PinRequest({frame: named}, chosen, whole=not free, closure=strength)
     save_take(editing.pin(source, asked).apply(source), out, write_sides)
     say(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
 
@@ -105,14 +105,14 @@ def retarget(
     assert out is not None
     performance.show()
     if method is Method.MANIFOLD:
-        made, target = labelled.retarget(performance, character, labels)
+        retargeted, target = labelled.retarget(performance, character, labels)
     else:
         matching = _matching(alpha=alpha, beta=beta, closure=closure, unbounded=unbounded)
-        made, target = _carried(performance, character, landmarks, matching)
-    save_take(made, out, write_sides)
-    for notice in made.notices:
+        retargeted, target = _retargeted(performance, character, landmarks, matching)
+    save_take(retargeted, out, write_sides)
+    for notice in retargeted.notices:
         say(notice)
-    say(f"Moved {target.name} by {counted(len(made), 'frame')} of {source.name}. Written to {out}.")
+    say(f"Moved {target.name} by {counted(len(retargeted), 'frame')} of {source.name}. Written to {out}.")
 
 
 def _require_sense(method: Method, *, labelled: bool, out: Path | None, suggests: bool) -> None:
@@ -139,7 +139,7 @@ def _matching(*, alpha: float | None, beta: float | None, closure: float | None,
     )
 
 
-def _carried(
+def _retargeted(
     performance: Carried, character: Path | None, landmarks: Path | None, matching: Matching
 ) -> tuple[Take, Character]:
     from engine import editing

@@ -111,7 +111,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
     def _on_change(self, change: Change) -> None:
         kinds = Change
         for cause, step in (
-            (kinds.TAKE | kinds.LANES, self._let_go),
+            (kinds.TAKE | kinds.LANES, self._cancel_gesture),
             (kinds.TAKE | kinds.LANES, self._lay_lanes),
             (kinds.TAKE | kinds.LANES | kinds.CURVES, partial(self._draw, take_curves)),
             (kinds.TAKE | kinds.LANES | kinds.LANE, self._arrange),
@@ -145,7 +145,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self._underlay.update()
         self._playhead.update()
 
-    def _let_go(self) -> None:
+    def _cancel_gesture(self) -> None:
         """Drop a gesture whose take or lane is gone: it may not be there any more."""
         if self.tool.busy:
             self.tool.cancel()

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QHeaderView, QT
 from app.retarget.retargeting import Retargeting
 from app.session import Session
 from app.widgets.section import Section, quiet
+from app.widgets.text import tip
 from engine.formats.characters.frame import UNITS_MM, UPS
 from engine.formats.characters.names import Match, reviewed
 from engine.take import SHAPES
@@ -59,11 +60,12 @@ class HeadSection(Section):
         self.up.activated.connect(lambda _: retargeting.choosing.read_anew(up=_chosen(self.up)))
         self.facing.activated.connect(lambda _: retargeting.choosing.read_anew(facing_deg=_degrees(self.facing)))
         self.table = QTableWidget(0, 2)
-        self.table.setHorizontalHeaderLabels(["In the file", "Meaning"])
+        self.table.setHorizontalHeaderLabels(["Shape", "Meaning"])
         self.table.setAccessibleName("Shapes of the head")
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(ROW_PX)
         header = self.table.horizontalHeader()
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(1, QHeaderView.ResizeMode.Fixed)
         header.resizeSection(1, MEANING_PX)
@@ -83,12 +85,12 @@ class HeadSection(Section):
     def show_all(self) -> None:
         """Show how the target was read."""
         state = self._retargeting
-        made, refused = state.target.imported, state.choosing.refused
+        imported, refused = state.target.imported, state.choosing.refused
         reading = refused[1] if refused else state.target.reading
-        self.needed = made is not None or refused is not None
+        self.needed = imported is not None or refused is not None
         self.setVisible(self.needed and self.session.view.tool in self.tools)
         for part in (self._frame, self.table, self.all_shapes):
-            part.setVisible(made is not None or (refused is not None and part is self._frame))
+            part.setVisible(imported is not None or (refused is not None and part is self._frame))
         for box, value in ((self.unit, reading.unit), (self.up, reading.up), (self.facing, _turn(reading.facing_deg))):
             with QSignalBlocker(box):
                 if value and box.findText(value) < 0:
@@ -101,11 +103,11 @@ class HeadSection(Section):
             self.table.hide()
             self.all_shapes.hide()
             return
-        if made is None:
+        if imported is None:
             return
-        rows = made.matches if self.all_shapes.isChecked() else reviewed(made.matches)
-        counts = f"{sum(row.sure for row in made.matches)} of {counted(len(made.matches), 'shape')} matched."
-        self._facts.setText(" ".join([counts, *made.notices]))
+        rows = imported.matches if self.all_shapes.isChecked() else reviewed(imported.matches)
+        counts = f"{sum(row.sure for row in imported.matches)} of {counted(len(imported.matches), 'shape')} matched."
+        self._facts.setText(" ".join([counts, *imported.notices]))
         self.table.setVisible(bool(rows))
         self._list(tuple(rows))
 
@@ -118,7 +120,7 @@ class HeadSection(Section):
         self.table.setFixedHeight(min(TABLE_PX, ROW_PX * (len(rows) + 1) + 6))
         for number, row in enumerate(rows):
             item = QTableWidgetItem(row.source)
-            item.setToolTip(row.how)
+            item.setToolTip(tip(f"{row.source}: {row.how}"))
             self.table.setItem(number, 0, item)
             box = self.boxes[row.source] = _box(f"Meaning of {row.source[:60]}", (LEFT_OUT, *SHAPES))
             box.setCurrentText(row.shape if row.sure else LEFT_OUT)
@@ -133,7 +135,7 @@ class HeadSection(Section):
 
 
 class _Box(QComboBox):
-    """A box that the wheel scrolls past: it stands in a list, and a choice by accident reads the head anew."""
+    """A box that ignores the wheel: in a scrolled list, an accidental choice would read the head again."""
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from app.retarget.carry import Pose
 from app.retarget.retargeting import Retargeting
 from app.retarget.solving import LABELS
+from app.retarget.target import Pose
 from app.session import Session
 from engine.editing import suggest_frames
 from engine.errors import EditError

@@ -6,9 +6,9 @@ from PySide6.QtCore import QSignalBlocker
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QCheckBox, QComboBox, QListWidget, QListWidgetItem, QPushButton
 
-from app.retarget.carry import Target
 from app.retarget.placing import Placing
 from app.retarget.retargeting import Retargeting
+from app.retarget.target import Target
 from app.session import Session
 from app.widgets.section import Section, quiet
 from app.widgets.text import tip

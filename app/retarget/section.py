@@ -1,4 +1,4 @@
-"""The Retarget tool's settings: what is carried, to which head, how, and what becomes of it."""
+"""The Retarget tool's settings: source, head, method, and what to do with the result."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class RetargetSection(Section):
 
     Parameters
     ----------
-    session : whose take is carried
-    retargeting, labelling : carry it, and know the labels
+    session : whose take is retargeted
+    retargeting, labelling : retarget it, and hold the labels
 
     Attributes
     ----------
@@ -141,9 +141,9 @@ class RetargetSection(Section):
         if not state.ready:
             return f"The take is on {state.target.head.name}. Choose another head to retarget to."
         if state.result is not None:
-            said = [each for each in state.result.take.notices if each not in state.performance.take.notices]
+            notices = [each for each in state.result.take.notices if each not in state.performance.take.notices]
             return " ".join(
-                [f"Solved {counted(len(state.result.take), 'frame')}: play them, then keep or discard them.", *said]
+                [f"Solved {counted(len(state.result.take), 'frame')}: play them, then keep or discard them.", *notices]
             )
         if state.share is not None:
             return "You can go on working."

@@ -78,7 +78,7 @@ class Comparing(QObject):
         return self._work.idle
 
     @property
-    def told(self) -> Mapping[str, Any] | None:
+    def alignment_inputs(self) -> Mapping[str, Any] | None:
         """How the two takes were brought together; None where there is no second one."""
         return paired_by(self._edits())
 
@@ -101,12 +101,12 @@ class Comparing(QObject):
 
     def shift(self, offset_s: float) -> None:
         """Put the take before at another time; `aligned` follows, or `failed` where that take is not there any more."""
-        session, told = self._session, self.told
+        session, inputs = self._session, self.alignment_inputs
         raw: Take | Path | None = None
         if self._raw is not None and self._raw[0] is session.document.recorded:
             raw = self._raw[1]
-        elif told is not None and session.document.path is not None:
-            raw = found_again(told, session.document.path)
+        elif inputs is not None and session.document.path is not None:
+            raw = found_again(inputs, session.document.path)
         if raw is None:
             self.failed.emit(
                 "The take before is not where it was, so it cannot be moved.", "Compare the two takes anew."

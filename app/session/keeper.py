@@ -198,14 +198,14 @@ class Keeper(QObject):
             return self._kept.project
 
     def _keep_unsaved(self, contents: Contents) -> Project:
-        """Let the work go to a new file of unsaved work; what was kept in before is let go of, as it is."""
+        """Keep the work in a new file of unsaved work; the file before is closed as it is."""
         before, path = self._kept, new_path(self.folder)
         with as_unsaved_work(path):
-            made = project.create(path, contents)
-        self._kept = Kept(made, saved=False)
+            created = project.create(path, contents)
+        self._kept = Kept(created, saved=False)
         if before is not None:
             before.project.close()
-        return made
+        return created
 
     def _go_on_unsaved(self, contents: Contents, error: DisplacedError) -> None:
         """Keep all of the work elsewhere: the file that it went to is no more its own."""
@@ -282,10 +282,10 @@ class Keeper(QObject):
         with self._lock:
             before, self._kept = self._kept, None
         if before is not None:
-            self._let_go(before.project, delete=delete and not before.saved)
+            self._close_project(before.project, delete=delete and not before.saved)
         self._told = ""
 
-    def _let_go(self, old: Project, *, delete: bool) -> None:
+    def _close_project(self, old: Project, *, delete: bool) -> None:
         old.close()
         if delete:
             try:
@@ -298,7 +298,7 @@ class Keeper(QObject):
         self._kept = Kept(saved, saved=True)
         self._secure(self._kept)
         if before is not None and before.project is not saved:
-            self._let_go(before.project, delete=not before.saved)
+            self._close_project(before.project, delete=not before.saved)
         return saved
 
     def _secure(self, kept: Kept) -> None:

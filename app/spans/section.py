@@ -256,9 +256,9 @@ class SpansSection(Section):
     def _show(self) -> None:
         chosen, filling = self.chosen, self._filling
         self._chosen_box.setVisible(chosen is not None and not filling.variants)
-        made = bool(filling.variants)
+        any_variants = bool(filling.variants)
         for widget in (self.strip, self.seed, self.accept_button, self.again_button, self.drop_button):
-            widget.setVisible(made)
+            widget.setVisible(any_variants)
         self.seed.setText(filling.title)
         self.again_button.setEnabled(len(filling.variants) > 1)
         self.strip.show_variants(filling.variants, filling.chosen, first=filling.first)
@@ -276,10 +276,10 @@ class SpansSection(Section):
 
 def _named(title: str, box: QSpinBox) -> QWidget:
     """Return a number with its name before."""
-    made = QWidget()
-    row = QHBoxLayout(made)
+    row_widget = QWidget()
+    row = QHBoxLayout(row_widget)
     row.setContentsMargins(0, 0, 0, 0)
     row.addWidget(quiet(title), 1)
     row.addWidget(box)
     box.setAccessibleName(title)
-    return made
+    return row_widget

@@ -58,7 +58,7 @@ class Timeline(QWidget):
     """
 
     marked = Signal()  # the selection was drawn in the lane: it is to become a span
-    told = Signal(str)  # what is wrong at the flag that was clicked
+    message = Signal(str)  # what is wrong at the flag that was clicked
     slid = Signal()  # the sound was dragged to where it is shown
     menu_wanted = Signal(str, QPoint, str)  # kind of thing, where on the screen, what to say of it
 
@@ -206,7 +206,7 @@ class Timeline(QWidget):
             view.move_playhead(under.goes_to)
             self._scrubbing = grip in (Grip.PLAYHEAD, Grip.VISEME)
             if under.flag is not None:
-                self.told.emit(under.flag.sentence)
+                self.message.emit(under.flag.sentence)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Go on with what the press began; show by the pointer what a press would take hold of."""

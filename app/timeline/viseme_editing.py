@@ -273,14 +273,14 @@ def _as_typed(lane: VisemeLane, index: int, text: str) -> VisemeLane:
     parts = text.split()
     if len(parts) not in (1, 3):
         raise EditError(f"{text.strip()[:40]!r} is not a viseme.", f"Type {SAYS}.")
-    said = renamed(lane, index, parts[0])
+    changed = renamed(lane, index, parts[0])
     if len(parts) == 1:
-        return said
+        return changed
     begin_s, end_s = _seconds(parts[1]), _seconds(parts[2])
     if not begin_s < end_s:
         raise EditError("A viseme must begin before it ends.")
-    begin, end = (*said.begin_of(index), begin_s), (*said.end_of(index), end_s)
-    later = begin_s > said.times_s[index, 0]  # what moves on needs room before it
+    begin, end = (*changed.begin_of(index), begin_s), (*changed.end_of(index), end_s)
+    later = begin_s > changed.times_s[index, 0]  # what moves on needs room before it
     for boundary in (end, begin) if later else (begin, end):
-        said = with_boundary(said, *boundary)
-    return said
+        changed = with_boundary(changed, *boundary)
+    return changed

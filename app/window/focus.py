@@ -91,9 +91,9 @@ class Focus(Watcher):
         assert isinstance(application, QApplication)
         application.focusChanged.connect(self._on_focus)
 
-    def let_go(self) -> None:
+    def remove(self) -> None:
         """Watch no longer."""
-        super().let_go()
+        super().remove()
         application = QApplication.instance()
         if isinstance(application, QApplication):
             application.focusChanged.disconnect(self._on_focus)

@@ -41,7 +41,7 @@ LEFT = frozenset({QEvent.Type.WindowDeactivate, QEvent.Type.ApplicationDeactivat
 
 
 class Keyboard(Watcher):
-    """Watches the keys of the whole program until it is let go.
+    """Watches the keys of the whole program until it is removed.
 
     Parameters
     ----------

@@ -155,9 +155,9 @@ class MainWindow(WindowParts):
 
     def shut_down(self) -> None:
         """End the threads; the window cannot be used after."""
-        self._keyboard.let_go()
-        self._plain_text.let_go()
-        self._focus.let_go()
+        self._keyboard.remove()
+        self._plain_text.remove()
+        self._focus.remove()
         self.transport.run(0.0)
         self.session.document.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
         self.files.opener.opening.close()
@@ -196,8 +196,8 @@ class MainWindow(WindowParts):
         self.actions_by_name["hit_exactly"].setChecked(not self.session.view.believability)
         self.actions_by_name["show_removed"].setChecked(self.session.view.shows_removed)
 
-    def wear(self, colours: theme.Palette) -> None:
-        """Take on a theme's colours."""
+    def apply_theme(self, colours: theme.Palette) -> None:
+        """Apply a theme's colours to every part."""
         self.colours = colours
         QApplication.setPalette(theme.qt_palette(colours))
         self.setStyleSheet(theme.style_sheet(colours))

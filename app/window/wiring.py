@@ -23,8 +23,8 @@ def connect(window: MainWindow) -> None:
     for clock in (window.timeline, window.status):
         window.preferences.counted.connect(clock.count_in_frames)
     window.edits.cutoff_hz = window.smoothing.cutoff.value
-    window.edits.let_go = window.timeline.visemes.drop
-    window.edits.put_away = window.notices.put_away
+    window.edits.cancel_move = window.timeline.visemes.drop
+    window.edits.hide_notice = window.notices.put_away
     window.edits.stop_else = window.retarget.retargeting.cancel
     window.time.looping = window.actions_by_name["loop"].isChecked
     for signed in (window.notes, window.flags, window.review.verdict):
@@ -40,10 +40,10 @@ def _notices(window: MainWindow) -> Rows:
     speakers = (window.edits, window.time, window.timeline, window.marks, window.review)
     return (
         *((part.failed, window.notices.tell) for part in parts),
-        *((speaker.told, window.status.tell) for speaker in speakers),
+        *((speaker.message, window.status.tell) for speaker in speakers),
         (window.keeper.failed, window.notices.hold),
         (window.keeper.mended, window.notices.withdraw),
-        (window.files.told, window.notices.tell),
+        (window.files.message, window.notices.tell),
         (window.files.wrote, window.notices.say),
         (window.spans.refused, window.notices.tell),
         (window.importing.refused, window.notices.tell),
@@ -59,7 +59,7 @@ def _opening(window: MainWindow) -> Rows:
         (window.keeper.kept, window.live.recording.settle),
         (window.importing.chosen, window.curves.setFocus),
         (window.importing.hide_button.clicked, window.show_importing),
-        (window.preferences.themed, window.wear),
+        (window.preferences.themed, window.apply_theme),
     )
 
 
@@ -108,7 +108,7 @@ def _retarget(window: MainWindow) -> Rows:
         (window.preview.dot_clicked, window.retarget.placing.choose),
         (window.files.capture_dropped, window.retarget.take_in),
         (window.files.character_chosen, retargeting.choosing.show_on),
-        (retargeting.choosing.told, window.status.hold),
+        (retargeting.choosing.message, window.status.hold),
     )
 
 

@@ -116,7 +116,7 @@ def test_a_curve_that_is_dragged_up_and_back_is_as_it_was_and_the_edit_is_told_o
     drag(qtbot, window, LIPS, frame, 15.0)
     assert session.document.curve(LIPS)[frame] > before[frame] + 10.0
     session.view.move_playhead(0)
-    assert window.facts.told.text().endswith(f"(frame {frame:,})")
+    assert window.facts.outcome.text().endswith(f"(frame {frame:,})")
     drag(qtbot, window, LIPS, frame, before[frame] - session.document.curve(LIPS)[frame])
     np.testing.assert_allclose(session.document.curve(LIPS), before, atol=1.0)
 
@@ -164,7 +164,7 @@ def test_a_file_that_cannot_be_read_leaves_the_work_as_it_was(
     take = window.session.document.take
     for name, content in (("a.csv", b""), ("b.csv", b"\x89PNG\r\n\x1a\n" + bytes(200)), ("c.csv", b"hello, world\n")):
         (tmp_path / name).write_bytes(content)
-        with qtbot.waitSignal(window.files.told, timeout=20_000):
+        with qtbot.waitSignal(window.files.message, timeout=20_000):
             window.load(tmp_path / name)
         assert window.notices.isVisible() and name in window.notices.text.text()
         assert "Traceback" not in window.notices.text.text()

@@ -22,7 +22,7 @@ def guard(qapp: QApplication) -> object:
     parent = QObject()
     guarding = PlainText(parent)
     yield guarding
-    guarding.let_go()
+    guarding.remove()
 
 
 def test_labels_show_markup_as_text(qtbot: QtBot) -> None:
