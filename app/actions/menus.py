@@ -62,7 +62,7 @@ class Menus(QObject):
         self._offer_presets()
 
     def _one_of(self, names: Sequence[str]) -> None:
-        """Keep one of some actions checked: the key of the tool in hand, pressed again, does not put it down."""
+        """Group actions of which exactly one is checked: pressing the current tool's key again keeps the tool."""
         group = QActionGroup(self)
         for name in names:
             group.addAction(self.actions[name])
@@ -88,7 +88,7 @@ class Menus(QObject):
             self.actions[entry.name].setToolTip(f"{entry.title}  ({keys[0]})" if keys else entry.title)
 
     def show_hints(self, *, changed: bool, saved: bool, hatched: bool) -> None:
-        """Tell how to begin; after the first edit how to take it back, compare and save it; then nothing."""
+        """Show how to begin; after the first edit how to undo, compare and save it; then nothing."""
         undo, save, play, fill = (self.actions[name].shortcut().toString() for name in ("undo", "save", "play", "fill"))
         begin = ["Drag a curve", f"{play} plays", *([f"{fill} fills what is hatched"] if hatched else [])]
         edited = [f"{undo} takes it back", f"{save} saves", "hold B for before"]

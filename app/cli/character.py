@@ -67,7 +67,7 @@ def landmarks_(
     landmarks: Landmarks = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Find the landmarks of a character anew, led by those that were placed by hand."""
+    """Find the landmarks of a character again, from those that were placed by hand."""
     from app.cli.tables import show
     from engine.character import save
     from engine.formats.characters.landmarks import with_landmarks
@@ -164,7 +164,7 @@ def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None)
 
 
 def _followed(head: Character, performance: Carried, points: Path | None) -> dict[str, int]:
-    """Return which vertex of a head follows which marker, by a file or by what the markers were taken for."""
+    """Return the vertex of each marker on a head, from a file or from the markers' landmarks."""
     from engine import editing
     from engine.formats.markers import layout as markers_layout
 

@@ -1,4 +1,4 @@
-"""What `retake retarget` and `retake drive` carry: a take, or markers with what each of them was taken for."""
+"""The source of `retake retarget` and `retake drive`: a take, or markers with the landmark of each."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ if TYPE_CHECKING:
     from engine.editing import Performance
     from engine.formats.characters.marker_table import MarkerTable
 
-MARKER_HELP = "For markers: correct what one was taken for, its name=a landmark; name= leaves it out."
+MARKER_HELP = "For markers: correct the landmark of one, its name=a landmark; name= leaves it out."
 
 
 @dataclass(frozen=True, eq=False)
 class Carried:
-    """A performance on its way to another head.
+    """A performance to be retargeted.
 
     Attributes
     ----------
     performance : a take on the bundled head, or a capture
-    table : what each marker of a capture was taken for; none for a take
+    table : the landmark of each marker of a capture; none for a take
     """
 
     performance: Performance
     table: MarkerTable | None = None
 
     def places(self, head: Character) -> dict[str, int]:
-        """Return which vertex of a head carries which marker; none for a take, whose markers are the standard ones."""
+        """Return the vertex of each marker on a head; none for a take, whose markers are the standard ones."""
         from engine.formats.characters.marker_places import places_on
 
         if self.table is None:
@@ -44,13 +44,13 @@ class Carried:
         return places_on(head, source.neutral, source.names, self.table)
 
     def show(self) -> None:
-        """Print what each marker was taken for, where that was not told by its name alone."""
+        """Print the landmark of each marker, where its name alone does not say it."""
         from app.cli.tables import show
 
         if self.table is None or all(row.how == "by name" for row in self.table.rows):
             return
         rows = [
-            {"marker": row.marker, "taken for": row.landmark or "a place of its own", "how": row.how, "mm": row.away_mm}
+            {"marker": row.marker, "landmark": row.landmark or "a place of its own", "how": row.how, "mm": row.away_mm}
             for row in self.table.rows
         ]
         show("Markers", rows, as_json=False)

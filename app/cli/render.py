@@ -117,7 +117,7 @@ def _captions(shown: tuple[Take, ...], noted: Opened, *, difference: bool) -> Ca
 
 
 def _sound(noted: Opened, named: Path | None, offset_s: float) -> Soundtrack | None:
-    """Return what is heard; a recording that nobody named and that cannot be read is told about and left out."""
+    """Return the sound; a recording that was found beside the take and cannot be read is reported and left out."""
     from app.preview.soundtrack import Soundtrack
     from engine.formats.audio import read
 

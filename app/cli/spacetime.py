@@ -116,7 +116,7 @@ def retarget(
 
 
 def _require_sense(method: Method, *, labelled: bool, out: Path | None, suggests: bool) -> None:
-    """Raise `EditError` where the options do not go together: better told before the work than after it."""
+    """Raise `EditError` where the options do not go together: before the work starts rather than after it."""
     from engine.formats import format_of
 
     if method is not Method.MANIFOLD and labelled:

@@ -238,7 +238,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
     # --- the mouse
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Give the press to the tool; the middle button pans; nothing moves under the pointer until it is let go."""
+        """Pass the press to the tool; the middle button pans; the lanes do not scroll until the button is released."""
         self._growth.hold()
         if event.button() == Qt.MouseButton.MiddleButton:
             self._pan_from = (event.position(), self.session.view.range)

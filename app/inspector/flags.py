@@ -174,7 +174,7 @@ class FlagsSection(Section):
         return sorted(here, key=lambda flag: (flag.start != frame, -flag.weight))
 
     def _show_here(self) -> None:
-        """Tell what is wrong at the playhead, the heaviest first, and mark its row."""
+        """Show what is wrong at the playhead, the most serious first, and mark its row."""
         here = [self._flags.index(flag) for flag in self._here()]
         here.sort(key=lambda row: row >= self._open)
         self.here.setText("\n".join(self._sentence(row) for row in here[:2]))

@@ -93,7 +93,7 @@ class _Box(QWidget):
         column.addWidget(self.remark)
 
     def tell(self, text: str) -> None:
-        """Tell what should be known of the file, or nothing."""
+        """Show a remark about the file, or none."""
         self.remark.setText(text)
         self.remark.setVisible(bool(text))
 

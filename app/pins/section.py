@@ -90,7 +90,7 @@ class PinsSection(Section):
         )
 
     def drop(self) -> None:
-        """Let the pose spring back."""
+        """Discard the pose."""
         self._pose = {}
         self._inference.cancel()
         self._show_sliders()

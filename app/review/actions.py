@@ -221,7 +221,7 @@ class ReviewActions(QObject):
         self.load(path)
 
     def _open_pair(self, open_then: Take, found: Pair) -> None:
-        """Make the other version one step after the open take, so that undo and hold-to-compare tell the two apart."""
+        """Make the other version one step after the open take, so that undo and hold-to-compare show the two."""
         if open_then is not self._session.document.take:
             return  # it was edited or closed while the other one was read
         name = found.after.name

@@ -48,7 +48,7 @@ class _Shift:
 
 
 class Comparing(QObject):
-    """Compares what is open with how it was recorded, while somebody looks at the result.
+    """Compares the open take with its recording, while the result is shown.
 
     Parameters
     ----------

@@ -107,7 +107,7 @@ class Keeper(QObject):
             self._session.document.undo.resetClean()
 
     def release(self) -> None:
-        """Let go of the project, so that it can be read anew; what is open is in memory alone until `keep` or `open`."""
+        """Close the project, so that it can be read again; what is open is in memory alone until `keep` or `open`."""
         self._detach(delete=False)
 
     def holds(self, path: Path) -> bool:
@@ -302,7 +302,7 @@ class Keeper(QObject):
         return saved
 
     def _secure(self, kept: Kept) -> None:
-        """Let a project of the user's be found again even if somebody replaces it just before a kill."""
+        """Record where a saved project is, so that it is found even if its file is replaced just before a kill."""
         if kept.saved:
             kept.project.keep_spare(self.folder)
 
@@ -325,7 +325,7 @@ class Keeper(QObject):
         return project.create(path, contents, self._report)
 
     def _report(self, share: float) -> None:
-        """Tell how far a save is; on the keeper's thread."""
+        """Emit the progress of a save; on the keeper's thread."""
         if self._stopped:
             raise EngineError("The project was not saved.", "Your work is kept as it was before.")
         self.progress.emit(share)

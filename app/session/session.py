@@ -22,7 +22,7 @@ class Session(QObject):
     Attributes
     ----------
     document : what is edited and kept
-    view : where one looks at it, and with which tool
+    view : what is shown of it, and the tool in use
     """
 
     changed = Signal(object)  # a Change

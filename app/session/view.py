@@ -1,4 +1,4 @@
-"""What the user looks at and works with: the playhead, the frames and lanes on screen, the selection, the tool."""
+"""The view state: the playhead, the frames and lanes on screen, the selection, the tool and the shown head."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ BRUSH_S, RADII_S = 0.5, (0.01, 10.0)  # of the brush: at first, and from a singl
 
 
 class View(QObject):
-    """Where one looks at a document, and with what one works on it; nothing of it is kept in a project.
+    """Holds what is shown of a document and the tool in use; nothing of it is stored in a project.
 
     Parameters
     ----------
-    document : what is looked at
+    document : the document that is shown
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class View(QObject):
         self.reset()
 
     def reset(self) -> None:
-        """Look at the beginning of another take, with the same tool; tells nobody."""
+        """Show the beginning of another take, with the same tool; emits nothing."""
         take = self._document.take
         self.playhead = 0
         self.range = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)

@@ -191,7 +191,7 @@ class Timeline(QWidget):
     # --- the mouse
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Scrub on the ruler; in a lane take hold of what is there, or begin to mark a span; with Shift select."""
+        """Scrub on the ruler; in a lane grab what is there, or begin to mark a span; with Shift select."""
         if event.button() != Qt.MouseButton.LeftButton:
             return
         x, under, view = event.position().x(), self._hit(event.position()), self._session.view
@@ -209,7 +209,7 @@ class Timeline(QWidget):
                 self.message.emit(under.flag.sentence)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Go on with what the press began; show by the pointer what a press would take hold of."""
+        """Continue what the press began; show by the pointer what a press would grab."""
         frame = round(self.frame_at(event.position().x()))
         if self.visemes.dragging:
             self.visemes.move(event.position().x())
@@ -269,7 +269,7 @@ class Timeline(QWidget):
         self.menu_wanted.emit(under.kind, event.globalPos(), under.sentence)
 
     def told_at(self, place: QPointF) -> str:
-        """Return what to tell of a place in the widget."""
+        """Return the tool tip of a place in the widget."""
         under = self._hit(place)
         if under.flag is not None:
             return under.flag.sentence

@@ -32,7 +32,7 @@ def group_of(label: str) -> int:
 
 
 def describe(lane: VisemeLane, index: int) -> str:
-    """Return what to tell of a cue."""
+    """Return the tool tip of a cue."""
     cue, (start_s, stop_s) = lane.cues[index], lane.times_s[index]
     label = plain(cue.label, longest=NAME_LENGTH) or "silence"
     group = list(GROUPS)[group_of(cue.label)]
@@ -47,7 +47,7 @@ def icon(name: str, colours: Palette) -> QIcon:
 
 
 def choices() -> list[tuple[str, str]]:
-    """Return each class and what to call it in a menu, with the phones that it stands for."""
+    """Return each class and its title in a menu, with its phones."""
     return [(name, f"{name}   {' '.join(CLASSES[name][:4])}") for name in NAMES]
 
 

@@ -1,4 +1,4 @@
-"""What the toolbar tells a newcomer: as many whole hints as there is room for."""
+"""Shows a newcomer as many whole hints in the toolbar as there is room for."""
 
 from __future__ import annotations
 

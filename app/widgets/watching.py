@@ -1,4 +1,4 @@
-"""An event filter on the whole program, until it is removed."""
+"""An event filter on the whole program that can be removed."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ class Keyboard(Watcher):
         return False
 
     def _counts(self) -> bool:
-        """Tell whether a letter is a key of the window, and not typed."""
+        """Return whether a letter is a shortcut of the window, and not typed."""
         typed = QApplication.focusWidget()
         return self._window.isActiveWindow() and (typed is None or not is_entry(typed))
 

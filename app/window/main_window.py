@@ -67,7 +67,7 @@ class MainWindow(WindowParts):
         self.show_opened()
 
     def do(self, name: str) -> None:
-        """Carry out an action of the table; the keys go back to the lanes."""
+        """Perform an action of the table; the keyboard focus returns to the lanes."""
         if name != "cancel":  # which would keep what is half typed
             self._focus.give_back()
         super().do(name)
@@ -100,7 +100,7 @@ class MainWindow(WindowParts):
         self.files.load(path)
 
     def show_opened(self) -> None:
-        """Show what was opened: stop playing, name it, and tell how it was read."""
+        """Show what was opened: stop playing, show its name and how it was read."""
         self.transport.run(0.0)
         self.notices.hide()
         self._show_title()

@@ -16,7 +16,7 @@ log = logging.getLogger(__name__)
 
 
 class Notices(QFrame):
-    """One sentence and what to do about it; it goes by itself when it was there long enough to be read.
+    """Shows a sentence and what to do about it, and hides itself after the time it takes to read.
 
     Escape and a button put it away at once. It stays while the pointer is on it or another window is worked in, and what
     endangers the work stays until it is over: `hold`.
@@ -57,7 +57,7 @@ class Notices(QFrame):
         self._show(sentence, advice, stays=False)
 
     def hold(self, sentence: str, advice: str = "") -> None:
-        """Show a sentence and an advice until they are put away, withdrawn or replaced."""
+        """Show a sentence and an advice until they are hidden, withdrawn or replaced."""
         log.warning("%s %s", sentence, advice)
         self._show(sentence, advice, stays=True)
 
@@ -94,7 +94,7 @@ class Notices(QFrame):
             self.fading.start(SHOWN_MS + READ_MS * len(self.text.text()))
 
     def _fade(self) -> None:
-        """Go, unless nobody looks: then wait on."""
+        """Hide, unless the window is not active: then wait on."""
         if self.window().isActiveWindow():
             self.hide()
         else:

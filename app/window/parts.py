@@ -128,5 +128,5 @@ class WindowParts(QMainWindow):
         self._owners = owners_of((entry.name for entry in ACTIONS), owners)
 
     def do(self, name: str) -> None:
-        """Carry out an action of the table."""
+        """Perform an action of the table."""
         getattr(self._owners[name], name)()

@@ -47,7 +47,7 @@ def _tell_what_is_open(window) -> None:  # type: ignore[no-untyped-def]
 
 
 def _report_to(window) -> None:  # type: ignore[no-untyped-def]
-    """Send what nobody caught to the log and one sentence to the user; the work stays open."""
+    """Write uncaught errors to the log and show one sentence; the work stays open."""
 
     def report(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         logging.getLogger("app").error("uncaught", exc_info=(kind, error, trace))

@@ -1,4 +1,4 @@
-"""Which part of the window hears of what: a table of signals and of the methods that they call.
+"""Connects the parts of the window: tables of signals and of the methods that they call.
 
 Methods, and no lambdas: a connection keeps what a lambda holds for as long as its sender lives, and the window, which
 owns the senders, would never be freed.
@@ -34,7 +34,7 @@ def connect(window: MainWindow) -> None:
 
 
 def _notices(window: MainWindow) -> Rows:
-    """What cannot be done is told in a notice, what was done in the status bar."""
+    """Connect errors to the notices, and messages to the status bar."""
     panels = (window.preview, window.media, window.reference, window.live, window.retarget, window.review, window.flags)
     parts = (*panels, window.inference, window.filling, window.visemes, window.timeline.visemes, window.marks)
     speakers = (window.edits, window.time, window.timeline, window.marks, window.review)
