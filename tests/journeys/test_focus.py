@@ -59,7 +59,7 @@ def test_a_tool_switch_gives_the_keys_to_the_lanes_and_not_to_a_button(window: M
         assert window.curves.hasFocus()
 
 
-def test_what_is_put_away_hands_the_keys_to_the_lanes(window: MainWindow) -> None:
+def test_what_is_hidden_gives_the_focus_to_the_lanes(window: MainWindow) -> None:
     with_sound(window)
     seen = {window.curves}
     for tool in TOOLS:

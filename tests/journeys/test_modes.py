@@ -48,7 +48,7 @@ def test_keys_and_slider_say_the_same(window: MainWindow) -> None:
     assert window.session.view.believability == 0.8 and not window.actions_by_name["hit_exactly"].isChecked()
 
 
-def test_what_is_not_reached_is_told_with_the_click_that_reaches_it(qtbot: QtBot, window: MainWindow) -> None:
+def test_a_shortfall_is_shown_with_the_button_that_reaches_it(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
     window.brush.believability.setValue(100)
     session.view.choose_lane(WIDTH)

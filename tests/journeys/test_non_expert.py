@@ -107,7 +107,7 @@ def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
     np.testing.assert_array_equal(session.document.take.weights, before[0])
 
 
-def test_a_curve_that_is_dragged_up_and_back_is_as_it_was_and_the_edit_is_told_of_where_it_goes_furthest(
+def test_a_curve_dragged_up_and_back_is_as_it_was_and_the_largest_change_is_shown(
     qtbot: QtBot, window: MainWindow
 ) -> None:
     session = window.session
@@ -134,7 +134,7 @@ def test_play_and_step_by_keys(qtbot: QtBot, window: MainWindow) -> None:
     assert window.session.document.take.lost[window.session.view.playhead]
 
 
-def test_escape_drops_the_drag_under_way(qtbot: QtBot, window: MainWindow) -> None:
+def test_escape_cancels_the_drag(qtbot: QtBot, window: MainWindow) -> None:
     area, start = window.curves.viewport(), on_curve(window, LIPS, 80)
     QTest.mousePress(area, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, start)
     QTest.mouseMove(area, start + QPoint(0, 40))

@@ -52,7 +52,7 @@ def test_a_notice_goes_when_it_was_read_but_not_under_the_pointer(qtbot: QtBot, 
     qtbot.waitUntil(lambda: not notices.isVisible())
 
 
-def test_work_in_danger_is_told_until_it_is_safe(window: MainWindow) -> None:
+def test_a_warning_about_unsafe_work_stays_until_it_is_safe(window: MainWindow) -> None:
     window.keeper.failed.emit("demo.retake could not be written.", "Free some space.")
     assert window.notices.isVisible() and not window.notices.fading.isActive()
     window.keeper.mended.emit("demo.retake could not be written.")

@@ -78,7 +78,7 @@ def place_the_chin(qtbot: QtBot, window: MainWindow) -> None:
     assert face.camera.around_deg != 0 and retarget.retargeting.target.places["chin"] == moved
 
 
-def test_a_take_is_carried_to_another_head_and_back(
+def test_a_take_is_retargeted_to_another_head_and_back(
     qtbot: QtBot, window: MainWindow, broad_head: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     session, retarget, face = window.session, window.retarget, window.preview.face

@@ -228,7 +228,7 @@ def test_what_a_head_cannot_do_is_not_written_as_its_own(tmp_path: Path, capsys:
 
 
 @pytest.mark.parametrize("command", [["retarget"], ["drive", "--mesh", "head.obj"]])
-def test_an_ending_that_cannot_be_written_is_told_before_anything_is_read(
+def test_an_ending_that_cannot_be_written_is_refused_before_anything_is_read(
     command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.run([*command, "no_such_take.csv", "-o", str(tmp_path / "t.txt")]) == 2
