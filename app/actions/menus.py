@@ -92,7 +92,7 @@ class Menus(QObject):
         undo, save, play, fill = (self.actions[name].shortcut().toString() for name in ("undo", "save", "play", "fill"))
         begin = ["Drag a curve", f"{play} plays", *([f"{fill} fills what is hatched"] if hatched else [])]
         edited = [f"{undo} takes it back", f"{save} saves", "hold B for before"]
-        self.hints.tell(begin if not changed else [] if saved else edited)
+        self.hints.show_all(begin if not changed else [] if saved else edited)
 
     def _fill_recent(self) -> None:
         self._recent.clear()

@@ -118,7 +118,7 @@ class Lane:
         self.view.setGeometry(box)
         self.gutter.setGeometry(QRectF(0.0, box.top(), GUTTER_PX, box.height()))
 
-    def put_away(self) -> None:
+    def hide_plots(self) -> None:
         """Take it off the screen, to be shown again; what it drew is not kept up to date meanwhile."""
         self.view.hide()
         self.gutter.hide()

@@ -49,7 +49,7 @@ class MediaSection(Section):
             box.setVisible(record is not None)
             if record is not None:
                 box.show_medium(name_of(record), self.session.document.offset_s(kind), self.session.document.take.fps)
-                box.tell(beyond_the_take(self.session) if kind == "audio" else "")
+                box.show_remark(beyond_the_take(self.session) if kind == "audio" else "")
         self.needed = bool(self.session.document.marks.media)
         self.setVisible(self.needed)
 
@@ -92,7 +92,7 @@ class _Box(QWidget):
         column.addLayout(bottom)
         column.addWidget(self.remark)
 
-    def tell(self, text: str) -> None:
+    def show_remark(self, text: str) -> None:
         """Show a remark about the file, or none."""
         self.remark.setText(text)
         self.remark.setVisible(bool(text))

@@ -277,7 +277,7 @@ class Timeline(QWidget):
             replies = (f"↳ {reply.text}" for reply in under.mark.replies)
             return "\n".join([under.mark.text, f"{under.mark.author}, {under.mark.time}", *replies])
         on_visemes = under.lane == "visemes" and place.x() >= self._gutter
-        return (self.visemes.tell(place.x()) if on_visemes else "") or HINTS.get(under.lane, HINTS[""])
+        return (self.visemes.tool_tip(place.x()) if on_visemes else "") or HINTS.get(under.lane, HINTS[""])
 
     def _show_pointer(self, place: QPointF) -> None:
         self.setToolTip(tip(self.told_at(place)))

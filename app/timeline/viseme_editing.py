@@ -126,7 +126,7 @@ class VisemeEditing(QObject):
             return None
         return lane.edge_near(self.time_at(x), EDGE_PX / max(1.0, box.width()) * (last_s - first_s))
 
-    def tell(self, x: float) -> str:
+    def tool_tip(self, x: float) -> str:
         """Return what to say of what lies under the pointer."""
         lane, index = self._session.document.visemes, self.cue_at(x)
         return describe(lane, index) if lane is not None and index is not None else ""

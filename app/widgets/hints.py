@@ -25,7 +25,7 @@ class Hints(Label):
         self.setIndent(GRID)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
 
-    def tell(self, hints: Sequence[str]) -> None:
+    def show_all(self, hints: Sequence[str]) -> None:
         """Show hints, the one that matters most first; none for nothing."""
         self._hints = tuple(hints)
         self.setToolTip("\n".join(hints))

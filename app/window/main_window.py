@@ -106,9 +106,9 @@ class MainWindow(WindowParts):
         self._show_title()
         self.status.show_take()
         from_file = self.keeper.path is None and self.session.document.path not in (None, DEMO_TAKE)
-        self.importing.tell(self.files.opener.imported, shown=from_file)
+        self.importing.show_reading(self.files.opener.imported, shown=from_file)
         there = from_file and self.importing.there  # it has what was noticed
-        self.status.tell("" if there else " ".join(self.session.document.take.notices))
+        self.status.show_message("" if there else " ".join(self.session.document.take.notices))
         self.show_importing()
 
     def show_import(self) -> None:

@@ -52,8 +52,8 @@ def _report_to(window) -> None:  # type: ignore[no-untyped-def]
     def report(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         logging.getLogger("app").error("uncaught", exc_info=(kind, error, trace))
         if isinstance(error, EngineError):
-            window.notices.tell(error.sentence, error.advice)
+            window.notices.warn(error.sentence, error.advice)
         else:
-            window.notices.tell("Something went wrong; your take is as it was.", "Help > About says where the log is.")
+            window.notices.warn("Something went wrong; your take is as it was.", "Help > About says where the log is.")
 
     sys.excepthook = report

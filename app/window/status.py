@@ -75,13 +75,13 @@ class StatusBar(QFrame):
         """Remove the message that the networks are loading."""
         self._labels["engine"].setText("")
 
-    def tell(self, text: str) -> None:
+    def show_message(self, text: str) -> None:
         """Show a message for some seconds."""
         self["notice"].setText(text)
         self["notice"].setToolTip(tip(text))
         self._passing.start(TOLD_MS)
 
-    def hold(self, text: str) -> None:
+    def show_lasting(self, text: str) -> None:
         """Show a message until the next one."""
         self._passing.stop()
         self["notice"].setText(text)
@@ -126,7 +126,7 @@ class StatusBar(QFrame):
         if change & Change.MEDIA and self._session.document.audio is not self._sound:
             self._sound = self._session.document.audio
             if beyond := beyond_the_take(self._session):
-                self.tell(beyond)
+                self.show_message(beyond)
 
     def _show_saved(self) -> None:
         saving, opening = self._keeper.saving, self._opening.path

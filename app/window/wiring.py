@@ -24,7 +24,7 @@ def connect(window: MainWindow) -> None:
         window.preferences.counted.connect(clock.count_in_frames)
     window.edits.cutoff_hz = window.smoothing.cutoff.value
     window.edits.cancel_move = window.timeline.visemes.drop
-    window.edits.hide_notice = window.notices.put_away
+    window.edits.hide_notice = window.notices.hide_shown
     window.edits.stop_else = window.retarget.retargeting.cancel
     window.time.looping = window.actions_by_name["loop"].isChecked
     for signed in (window.notes, window.flags, window.review.verdict):
@@ -39,14 +39,14 @@ def _notices(window: MainWindow) -> Rows:
     parts = (*panels, window.inference, window.filling, window.visemes, window.timeline.visemes, window.marks)
     speakers = (window.edits, window.time, window.timeline, window.marks, window.review)
     return (
-        *((part.failed, window.notices.tell) for part in parts),
-        *((speaker.message, window.status.tell) for speaker in speakers),
-        (window.keeper.failed, window.notices.hold),
+        *((part.failed, window.notices.warn) for part in parts),
+        *((speaker.message, window.status.show_message) for speaker in speakers),
+        (window.keeper.failed, window.notices.warn_until_solved),
         (window.keeper.mended, window.notices.withdraw),
-        (window.files.message, window.notices.tell),
-        (window.files.wrote, window.notices.say),
-        (window.spans.refused, window.notices.tell),
-        (window.importing.refused, window.notices.tell),
+        (window.files.message, window.notices.warn),
+        (window.files.wrote, window.notices.inform),
+        (window.spans.refused, window.notices.warn),
+        (window.importing.refused, window.notices.warn),
         (window.preview.timed, window.status.timed),
         (window.inference.ready, window.status.engine_ready),
     )
@@ -108,7 +108,7 @@ def _retarget(window: MainWindow) -> Rows:
         (window.preview.dot_clicked, window.retarget.placing.choose),
         (window.files.capture_dropped, window.retarget.take_in),
         (window.files.character_chosen, retargeting.choosing.show_on),
-        (retargeting.choosing.message, window.status.hold),
+        (retargeting.choosing.message, window.status.show_lasting),
     )
 
 

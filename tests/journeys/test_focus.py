@@ -66,13 +66,13 @@ def test_what_is_hidden_gives_the_focus_to_the_lanes(window: MainWindow) -> None
         window.actions_by_name[f"{tool}_tool"].trigger()
         for widget in [each for each in reached(window) if each not in seen]:
             seen.add(widget)
-            for put_away, bring_back in (
+            for hide, bring_back in (
                 (widget.hide, widget.show),
                 (lambda: widget.setEnabled(False), lambda: widget.setEnabled(True)),  # noqa: B023
             ):
                 widget.setFocus()
                 assert QApplication.focusWidget() is widget
-                put_away()
+                hide()
                 assert window.curves.hasFocus(), widget
                 bring_back()
 

@@ -199,7 +199,7 @@ def test_without_visemes_there_is_no_lane(timeline: Timeline) -> None:
     session, height = timeline._session, timeline.sizeHint().height()
     session.document.set_visemes(None)
     assert timeline.lane_box("visemes").isEmpty() and timeline.sizeHint().height() < height
-    assert timeline.visemes.edge_at(300) is None and timeline.visemes.tell(300) == ""
+    assert timeline.visemes.edge_at(300) is None and timeline.visemes.tool_tip(300) == ""
 
 
 FLAGS = (
