@@ -253,7 +253,9 @@ class Media(QObject):
             self._session.document.set_marks(self._session.document.marks.with_medium(wanted.kind, result.record))
         else:
             self._push(wanted.kind, result.record, f"replace {project.name_of(wanted.record)}")
-            self.failed.emit(f"{name} is not the file that was attached; it is used from now on.", "Undo goes back.")
+            self.failed.emit(
+                f"{name} is not the file that was attached; it is used from now on.", "Undo restores the old one."
+            )
 
     def _use(self, kind: str, result: _Read) -> None:
         content = result.record.sha256

@@ -109,7 +109,7 @@ class Comparing(QObject):
             raw = found_again(inputs, session.document.path)
         if raw is None:
             self.failed.emit(
-                "The take before is not where it was, so it cannot be moved.", "Compare the two takes anew."
+                "The take before is not where it was, so it cannot be moved.", "Compare the two takes again."
             )
         else:
             self._work.submit(_Shift(session.document.original, session.document.take, raw, offset_s), "shift")
@@ -168,6 +168,6 @@ def _shifted(request: _Shift) -> Edit:
     offset_s = request.offset_s
     weights, lost, _ = on_its_clock(raw, request.after, offset_s)
     if len(weights) != len(request.original):
-        raise EngineError("The takes have another length by now.", "Compare them anew.")
+        raise EngineError("The takes have another length by now.", "Compare them again.")
     frames = offset_s * request.after.fps
     return align_edit(f"align at {frames:+g} frames", weights, lost, {"offset_s": offset_s, "by": "offset"})
