@@ -16,7 +16,7 @@ from engine.errors import EditError
 from engine.words import counted
 
 if TYPE_CHECKING:
-    from app.cli.performance import Carried
+    from app.cli.performance import MarkedPerformance
     from engine.character import Character
     from engine.formats.characters.assemble import Import
 
@@ -163,7 +163,7 @@ def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None)
     return character_of(path, Reading(unit or "", up or "", facing))
 
 
-def _followed(head: Character, performance: Carried, points: Path | None) -> dict[str, int]:
+def _followed(head: Character, performance: MarkedPerformance, points: Path | None) -> dict[str, int]:
     """Return the vertex of each marker on a head, from a file or from the markers' landmarks."""
     from engine import editing
     from engine.formats.markers import layout as markers_layout

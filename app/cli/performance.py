@@ -22,7 +22,7 @@ MARKER_HELP = "For markers: correct the landmark of one, its name=a landmark; na
 
 
 @dataclass(frozen=True, eq=False)
-class Carried:
+class MarkedPerformance:
     """A performance to be retargeted.
 
     Attributes
@@ -65,7 +65,7 @@ def performance_of(
     unit: str | None = None,
     marker: Sequence[str] | None = None,
     placed: bool = False,
-) -> Carried:
+) -> MarkedPerformance:
     """Read a take or a capture; raises `EngineError`.
 
     Parameters
@@ -87,16 +87,16 @@ def performance_of(
     if path.suffix.lower() not in markers.ENDINGS or is_take(path):
         if changes:
             raise EditError("A take has no markers to correct.", "Leave out --marker.")
-        return Carried(Performance(open_take(path, fps, sides), bundled()))
+        return MarkedPerformance(Performance(open_take(path, fps, sides), bundled()))
     capture = markers.read(path, unit=unit, fps=fps)
     if not 0 <= neutral < len(capture):
         raise EditError(f"Frame {neutral} is not within the capture, which has {counted(len(capture), 'frame')}.")
     if placed:
         source = capture_of(capture, neutral_frame=neutral)
-        return Carried(Performance(source.take, bundled(), source))
+        return MarkedPerformance(Performance(source.take, bundled(), source))
     table = match_markers(capture.positions[neutral], capture.names).corrected(changes)
     source = capture_of(capture, neutral_frame=neutral, turn=table.turn, landmarks=table.landmarks)
-    return Carried(Performance(source.take, bundled(), source), table)
+    return MarkedPerformance(Performance(source.take, bundled(), source), table)
 
 
 def is_take(path: Path) -> bool:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli import labelled
-from app.cli.performance import MARKER_HELP, Carried, performance_of
+from app.cli.performance import MARKER_HELP, MarkedPerformance, performance_of
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from app.printing import say
 from engine.errors import EditError
@@ -140,7 +140,7 @@ def _matching(*, alpha: float | None, beta: float | None, closure: float | None,
 
 
 def _retargeted(
-    performance: Carried, character: Path | None, landmarks: Path | None, matching: Matching
+    performance: MarkedPerformance, character: Path | None, landmarks: Path | None, matching: Matching
 ) -> tuple[Take, Character]:
     from engine import editing
     from engine.character import bundled
