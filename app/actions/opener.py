@@ -67,6 +67,8 @@ class Opener(QObject):
         self._discarded = None
         if self._keeper.holds(path):
             self.when_safe(partial(self._reopen, path))
+        elif self._session.document.edited and self._keeper.path is not None:
+            self.when_safe(partial(self.opening.read, path))  # the last step is on its way to the project
         elif self._session.document.edited:
             # before it is read, which may take long
             self._ask(partial(self.opening.read, path), discard=self._remember_discarded)
