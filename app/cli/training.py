@@ -1,4 +1,4 @@
-"""`retake train` and `retake build`: making the networks and the bundled assets anew."""
+"""`retake train` and `retake build`: train the networks and build the bundled assets."""
 
 from __future__ import annotations
 

@@ -104,7 +104,7 @@ def _in_sight(starts: np.ndarray, stops: np.ndarray, box: QRectF) -> np.ndarray:
 
 
 def _apart(places: np.ndarray, box: QRectF) -> Iterator[tuple[int, float]]:
-    """Yield index and place, in pixels, of the marks that can be told from the one before; a text may reach in from the left."""
+    """Yield index and place, in pixels, of the marks that do not overlap the one before; a text may reach in from the left."""
     last = -np.inf
     for index in np.flatnonzero((places >= box.left() - NOTE_PX) & (places <= box.right() + 5)).tolist():
         x = float(places[index])

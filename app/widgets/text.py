@@ -51,7 +51,7 @@ def _breakable(text: str) -> str:
 
 
 def caption(text: str) -> str:
-    """Return text for a button, a box to tick or a menu: of one line, where an ampersand stands for itself."""
+    """Return text for a button, a box to tick or a menu: of one line, where an ampersand is shown as one."""
     return plain(text, longest=CAPTION_LENGTH).replace("&", "&&")
 
 
