@@ -18,6 +18,7 @@ from engine.review.changes import Change as Difference
 from engine.review.changes import Edited, compare
 from engine.review.pairing import Pair, align_edit, found_again, on_its_clock, pair, paired_by
 from engine.take import Take
+from engine.words import plural
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,4 +171,5 @@ def _shifted(request: _Shift) -> Edit:
     if len(weights) != len(request.original):
         raise EngineError("The takes have another length by now.", "Compare them again.")
     frames = offset_s * request.after.fps
-    return align_edit(f"align at {frames:+g} frames", weights, lost, {"offset_s": offset_s, "by": "offset"})
+    title = f"align at {frames:+g} {plural(round(abs(frames)), 'frame')}"
+    return align_edit(title, weights, lost, {"offset_s": offset_s, "by": "offset"})

@@ -49,7 +49,7 @@ def test_variants_lie_farther_apart_the_livelier_they_are(gap: Gap, monkeypatch:
         return float(bundled().fill(gap, seeds=range(4))[:, MIDDLE].std(axis=0).mean())
 
     usual = apart()
-    monkeypatch.setattr(infer, "LIVELINESS", 1.0)
+    monkeypatch.setattr(infer, "TUNING", replace(TUNING, noise_gain=1.0))
     assert 1.5 < usual / apart() < 3.5
 
 
