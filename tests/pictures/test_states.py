@@ -39,7 +39,7 @@ def pinning_in_light(opened: MainWindow) -> None:
 
 
 def told_off(opened: MainWindow) -> None:
-    opened.notices.tell("take.csv is not a Live Link Face file.", "Export it from the app as CSV.")
+    opened.notices.warn("take.csv is not a Live Link Face file.", "Export it from the app as CSV.")
 
 
 def sound_missing(opened: MainWindow) -> None:
