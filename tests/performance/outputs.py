@@ -145,7 +145,7 @@ class Window:
         """Retarget to a head, solve the whole take and keep it."""
         state = self.window.retarget.retargeting
         self.window.retarget.retarget_tool()
-        state.choose_target(head)
+        state.choosing.choose_target(head)
         self.until(lambda: state.ready)
         state.solve()
         self.until(lambda: state.result is not None)
