@@ -60,14 +60,8 @@ def render(
     from engine.formats.base.reading import Reading
 
     shown, noted = _shown(take, compare, Reading(fps, sides_of(sides)), before_edits=before_edits, offset_s=offset)
-    if difference and len(shown) == 1:
-        raise EditError("A difference needs two takes.", "Name another one with --compare, or add --before-edits.")
-    if frame is not None and not all(0 <= frame < len(each) for each in shown):
-        raise EditError(f"Frame {frame} is not within the take, which has {counted(min(map(len, shown)), 'frame')}.")
-    if character is not None:
-        from engine.formats.characters.opening import character_of
-
-        movie.use(character_of(character))
+    _check(shown, frame, difference=difference)
+    _use_head(character)
     captions = _captions(shown, noted, difference=difference) if burn_in else None
     drawn = movie.Movie(shown, size, None, difference, captions)
     if out.suffix.lower() == ".png":
@@ -78,6 +72,23 @@ def render(
     else:
         raise EditError(f"{out.name} is neither a picture nor a movie.", "Use a name that ends in .png or .mp4.")
     say(f"wrote {out}")
+
+
+def _check(shown: tuple[Take, ...], frame: int | None, *, difference: bool) -> None:
+    """Raise `EditError` where the takes have not what shall be drawn."""
+    if difference and len(shown) == 1:
+        raise EditError("A difference needs two takes.", "Name another one with --compare, or add --before-edits.")
+    if frame is not None and not all(0 <= frame < len(each) for each in shown):
+        raise EditError(f"Frame {frame} is not within the take, which has {counted(min(map(len, shown)), 'frame')}.")
+
+
+def _use_head(character: Path | None) -> None:
+    """Draw on another head from now on."""
+    if character is not None:
+        from app.preview import movie
+        from engine.formats.characters.opening import character_of
+
+        movie.use(character_of(character))
 
 
 def _shown(

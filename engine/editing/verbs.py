@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from engine.editing.editor import Editor
 from engine.editing.requests import (
+    DEFAULT_BELIEVABILITY,
+    Change,
     CleanRequest,
     ControlRequest,
     DragRequest,
@@ -34,6 +36,19 @@ def drag(take: Take, request: DragRequest, *, held: Array | None = None) -> Patc
 def set_control(take: Take, request: ControlRequest) -> Patch:
     """Change one control over a range of frames; the whole face follows."""
     return Editor(take).patch(request)
+
+
+def edit_control(
+    take: Take,
+    control: str,
+    frames: tuple[int, int],
+    change: Change,
+    amount: float,
+    *,
+    believability: float = DEFAULT_BELIEVABILITY,
+) -> Patch:
+    """Change one control as `set_control` does, for scripts that make no request."""
+    return set_control(take, ControlRequest(control, frames, change, amount, believability))
 
 
 def replace_weight(take: Take, request: WeightRequest) -> Patch:

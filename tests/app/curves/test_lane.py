@@ -121,7 +121,7 @@ def test_what_cleaning_takes_off_is_told_by_its_full_scale(qtbot: QtBot) -> None
 
 def test_a_lane_that_is_put_away_is_hidden_and_drawn_anew(qtbot: QtBot) -> None:
     lane = a_lane(np.linspace(10, 30, 200))
-    lane.put_away()
+    lane.hide_plots()
     assert not lane.view.isVisible() and not lane.gutter.isVisible() and not lane.dot.isVisible()
     with pytest.raises(AssertionError):
         lane.draw_original((0, 100))

@@ -47,4 +47,4 @@ def test_a_take_that_is_opened_over_another_head_is_on_the_usual_one_again(qtbot
     session.document.character = bundled()
     changes = heard(session)
     session.open(a_take(20), None)
-    assert changes[-1] == Change.TAKE | Change.CHARACTER and session.document.character is None
+    assert changes[-1] == Change.TAKE | Change.CHARACTER | Change.HEAD and session.document.character is None
