@@ -33,14 +33,12 @@ def closures(transcript: Transcript, take: Take, *, offset_s: float = 0.0) -> Cl
     """
     lips = bundled_measurer().measure(take.weights)[:, CONTROL_INDEX["lips_vertical"]]
     shut = (lips < CLOSED_MM) & ~take.lost
-    times = [
-        (cue.start_s + offset_s - AROUND_S, cue.stop_s + offset_s + AROUND_S)
-        for cue in transcript.phones
-        if class_of(cue.label) == _MBP
-    ]
-    frames = np.ceil(np.array(times).reshape(-1, 2) * take.fps - 0.5).astype(int)
+    said = [cue for cue in transcript.phones if class_of(cue.label) == _MBP]
+    times = np.array([(cue.start_s, cue.stop_s) for cue in said]).reshape(-1, 2) + offset_s
+    times = times[(times.mean(axis=1) >= 0) & (times.mean(axis=1) * take.fps < len(take))]
+    frames = np.ceil(([*times, -AROUND_S, AROUND_S]) * take.fps - 0.5).astype(int)
+    frames = np.clip(frames, [0, 1], [len(take) - 1, len(take)])
     frames[:, 1] = np.maximum(frames[:, 1], frames[:, 0] + 1)
-    frames = frames[(frames[:, 0] >= 0) & (frames[:, 1] <= len(take))]
     steps = np.linspace(0, len(take), min(SHIFTS, len(take)), endpoint=False).astype(int)
     counts = [_closed(np.roll(shut, int(step)), frames) for step in steps]
     return Closures(len(frames), counts[0], float(np.mean(counts)))
