@@ -86,6 +86,8 @@ class FileActions(QObject):
         self._given_up = None
         if self._keeper.holds(path):
             self.when_safe(partial(self._reopen, path))
+        elif self._session.document.edited and self._keeper.path is not None:
+            self.when_safe(partial(self.opening.read, path))  # the last step is on its way to the project
         elif self._session.document.edited:
             self._ask(partial(self.opening.read, path), discard=self._agree)  # before it is read, which may take long
         else:

@@ -110,7 +110,7 @@ def drawn(window: MainWindow, *places: QPoint) -> None:
 def test_a_mark_on_the_picture_goes_with_its_note_and_lies_where_it_was_drawn(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    document, view, face = window.session.document, window.session.view.range, window.preview.face
+    document, view, face = window.session.document, window.session.view, window.preview.face
     view.move_playhead(40)
     settled(qtbot, window)
     plain, camera = face_shown(window), face.camera
