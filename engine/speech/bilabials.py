@@ -36,7 +36,8 @@ def closures(transcript: Transcript, take: Take, *, offset_s: float = 0.0) -> Cl
     said = [cue for cue in transcript.phones if class_of(cue.label) == _MBP]
     times = np.array([(cue.start_s, cue.stop_s) for cue in said]).reshape(-1, 2) + offset_s
     times = times[(times.mean(axis=1) >= 0) & (times.mean(axis=1) * take.fps < len(take))]
-    frames = np.ceil(([*times, -AROUND_S, AROUND_S]) * take.fps - 0.5).astype(int)
+    around_s = np.array([-AROUND_S, AROUND_S])
+    frames = np.ceil((times + around_s) * take.fps - 0.5).astype(int)
     frames = np.clip(frames, [0, 1], [len(take) - 1, len(take)])
     frames[:, 1] = np.maximum(frames[:, 1], frames[:, 0] + 1)
     steps = np.linspace(0, len(take), min(SHIFTS, len(take)), endpoint=False).astype(int)

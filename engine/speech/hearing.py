@@ -6,6 +6,7 @@ PocketSphinx with its model of US English, in a process of its own. Its times ar
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -98,7 +99,7 @@ def _with_text(sound: Array, spoken: Sequence[Spoken], follow: Follow) -> Transc
     if aligned is None:
         raise EditError("The text is not what is said in the recording.", "Check it word by word, or leave it out.")
     cues, said = _read(aligned, 0.0, length_s, [each.word.written for each in spoken])
-    return Transcript(tuple(said), tuple(cues), length_s)
+    return Transcript(_sure(said), tuple(cues), length_s)
 
 
 def _without_text(sound: Array, follow: Follow) -> Transcript:
@@ -120,7 +121,7 @@ def _without_text(sound: Array, follow: Follow) -> Transcript:
         said += found
     if not said:
         raise EditError("No words were heard in the recording.", "Give the text of it, or choose a cleaner recording.")
-    return Transcript(tuple(said), tuple(cues), length_s, heard=True, missed=tuple(missed))
+    return Transcript(_sure(said), tuple(cues), length_s, heard=True, missed=tuple(missed))
 
 
 def _keyed(spoken: Sequence[Spoken]) -> tuple[list[str], dict[str, list[str]]]:
@@ -145,7 +146,10 @@ def _padded(sound: Array) -> bytes:
 def _read(
     aligned: Sequence[Any], start_s: float, stop_s: float, written: Sequence[str]
 ) -> tuple[list[Cue], list[Said]]:
-    """Return phones and words of a part of the recording, in its seconds, silence for what is no word."""
+    """Return phones and words of a part of the recording, in its seconds, silence for what is no word.
+
+    The words bear their scores per frame in place of a confidence, which takes those of the whole recording.
+    """
     cues: list[Cue] = []
     said: list[Said] = []
     names = iter(written)
@@ -159,8 +163,13 @@ def _read(
             name = next(names, word)
             score, frames = sum(phone[3] for phone in phones), sum(phone[2] for phone in phones)
             if mine:
-                said.append(Said(name, mine[0].start_s, mine[-1].stop_s, confidence(score, frames), tuple(mine)))
+                said.append(Said(name, mine[0].start_s, mine[-1].stop_s, score / frames, tuple(mine)))
     return _reaching(cues, start_s, stop_s), said
+
+
+def _sure(said: Sequence[Said]) -> tuple[Said, ...]:
+    found = confidence([each.confidence for each in said])
+    return tuple(replace(each, confidence=float(sure)) for each, sure in zip(said, found, strict=True))
 
 
 def _cue(phone: Sequence[Any], is_word: bool, shift_s: float, within_s: tuple[float, float]) -> Cue:
