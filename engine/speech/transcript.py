@@ -93,20 +93,6 @@ def confidence(scores: npt.ArrayLike) -> Array:
     return np.asarray(1 / (1 + np.exp(np.clip((middle - given) / TUNING.width, -50, 50))))
 
 
-def doubtful(self) -> tuple[int, ...]:
-        """The words that the sound does not fit."""
-        return tuple(at for at, each in enumerate(self.said) if each.confidence < TUNING.doubt)
-
-    def lane(self, source: str = "") -> VisemeLane:
-        """Return the phones as a lane that can be attached to a take; raises `EditError` where nothing is said."""
-        return attached(self.phones, source)
-
-
-def confidence(score: float, frames: int) -> float:
-    """Return how sure a word is, 0..1, of its score over so many frames of 10 ms."""
-    return float(1 / (1 + np.exp(np.clip((TUNING.middle - score / max(frames, 1)) / TUNING.width, -50, 50))))
-
-
 def doubt(transcript: Transcript) -> str:
     """Return one sentence where the words are hardly what is said; empty where they are."""
     unsure = [transcript.said[at] for at in transcript.doubtful]
