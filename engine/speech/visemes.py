@@ -97,7 +97,7 @@ def shapes(cues: Sequence[Cue]) -> tuple[Cue, ...]:
 
 
 def _shapes(cues: Sequence[Cue], known: dict[str, tuple[str, str, str | None]]) -> Iterator[Cue]:
-    for cue, after in zip(cues, (*cues[1:], None), strict=True):
+    for cue, after in zip(cues, (*cues[1:], None)[: len(cues)], strict=True):
         name, symbol, end = known[cue.label]
         if symbol in _ASPIRATES and after is not None and after.start_s - cue.stop_s < TUNING.apart_s:
             follows = known[after.label][0]

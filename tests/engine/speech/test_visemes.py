@@ -88,6 +88,10 @@ def test_phones_have_the_shapes_that_the_mouth_goes_through(labels: str, names: 
     assert all(before.stop_s == after.start_s for before, after in pairwise(found))
 
 
+def test_where_nothing_is_said_there_are_no_shapes() -> None:
+    assert shapes([]) == () and (classes_over([], frames=3, fps=30) == -1).all()
+
+
 def test_an_h_before_a_pause_does_not_take_the_vowel_after_it() -> None:
     assert shapes([Cue(0, 0.1, "HH"), Cue(0.4, 0.5, "IY")])[0].label == "ah"
 
