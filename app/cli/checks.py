@@ -22,6 +22,7 @@ OUTPUTS: dict[tuple[str, str], tuple[str, ...]] = {
     ("live", "record"): TAKE,
     ("render", "out"): (".png", ".mp4"),
     ("drive", "out"): (".glb", ".usd", ".usda", ".usdc", ".npz"),
+    ("speech", "out"): (".textgrid", ".csv"),
     ("flags", "out"): ANY,
     ("import_", "out"): ANY,
     ("landmarks_", "out"): ANY,

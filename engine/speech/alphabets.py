@@ -14,17 +14,19 @@ from typing import Literal
 Alphabet = Literal["arpabet", "ipa", "x-sampa"]
 
 # Class (BSS20 table 1) -> ARPAbet phones. The paper's Y stands with S and Z; here with the vowel that it is a glide of.
+# AW opens as wide as AA before it rounds, and ER is as round as R. H has the shape of what follows it (`visemes.shapes`);
+# where nothing does, the mouth is open and at rest.
 CLASSES: dict[str, tuple[str, ...]] = {
     "sil": ("SIL", "SP", "SPN", "PAU"),
     "ao": ("AO", "OY"),
-    "aa": ("AA", "AE", "AY"),
+    "aa": ("AA", "AE", "AY", "AW"),
     "eh": ("EH", "EY"),
     "iy": ("IH", "IY", "EE", "IX", "Y"),
     "ow": ("OH", "OW"),
-    "ah": ("AH", "ER", "AX", "AXR"),
-    "uw": ("UW", "AW", "UH"),
+    "ah": ("AH", "AX", "HH", "H"),
+    "uw": ("UW", "UH"),
     "jh": ("JH",),
-    "kg": ("G", "K", "HH", "H", "NG"),
+    "kg": ("G", "K", "NG"),
     "tn": ("L", "N", "T", "D", "DX", "EL", "EN"),
     "sz": ("S", "Z"),
     "sh": ("SH", "CH", "ZH"),
@@ -32,27 +34,27 @@ CLASSES: dict[str, tuple[str, ...]] = {
     "fv": ("F", "V"),
     "mbp": ("M", "B", "P", "EM"),
     "w": ("W", "WH"),
-    "r": ("R",),
+    "r": ("R", "ER", "AXR"),
 }
 _TIMIT = {
     "sil": "H# EPI BR NS SIL_B SIL_E",
-    "ah": "AX-H",
+    "ah": "AX-H HV",
     "uw": "UX",
-    "kg": "HV ENG GCL KCL Q",
+    "kg": "ENG GCL KCL Q",
     "tn": "NX DCL TCL",
     "mbp": "BCL PCL",
 }
 _SILENCE = "<p:> <usb> <nib> <eps> <sil> <s> </s> # _ - noise [noise] [sil] silence pause ∅ (...) ..."
 _IPA = {
     "ao": "ɔ ɔj ɔɪ ɔʏ ɒ œ ɶ ɞ",
-    "aa": "a ɑ æ aj aɪ ai ɐ ɑɪ",
+    "aa": "a ɑ æ aj aɪ ai ɐ ɑɪ aw aʊ au",
     "eh": "ɛ e ej eɪ ei ɛɪ",
     "iy": "i ɪ j ɨ ɯ ᵻ ʝ",
     "ow": "o ow oʊ ou əʊ əw ɵ ø ɤʊ",
-    "ah": "ə ʌ ɜ ɝ ɚ ɘ ɤ",
-    "uw": "u ʊ ʉ y ʏ aw aʊ au ᵿ",
+    "ah": "ə ʌ ɜ ɘ ɤ h ɦ",
+    "uw": "u ʊ ʉ y ʏ ᵿ",
     "jh": "dʒ dʑ dʐ ɖʐ ɟ ɟʝ ʥ ʤ",
-    "kg": "k ɡ g ŋ c ç x ɣ q ɢ χ ħ ʕ ʔ h ɦ ɲ ɴ ɰ ɠ ʛ ʜ ʢ ʡ ʟ ɧ kx",
+    "kg": "k ɡ g ŋ c ç x ɣ q ɢ χ ħ ʕ ʔ ɲ ɴ ɰ ɠ ʛ ʜ ʢ ʡ ʟ ɧ kx",
     "tn": "t d n l ɾ ɫ ʎ ɬ ɮ ɭ ʈ ɖ ɳ ɗ ɺ ᶑ tɬ dɮ",
     "sz": "s z ts dz ʦ ʣ",
     "sh": "ʃ ʒ tʃ ʂ ʐ ɕ ʑ tɕ tʂ ʈʂ cç ʧ ʨ",
@@ -60,7 +62,7 @@ _IPA = {
     "fv": "f v ɱ ʋ ⱱ",
     "mbp": "m b p ɓ ɸ β ʙ pf bv ʘ",
     "w": "w ʍ ɥ",
-    "r": "ɹ r ʁ ʀ ɻ ɽ",
+    "r": "ɹ r ʁ ʀ ɻ ɽ ɝ ɚ",
 }
 _VOWELS = frozenset("aɑæɐɒɔœɶɞɛeiɪɨɯoɵøəʌɜɝɚɘɤuʊʉyʏjw")  # with the glides that end a diphthong
 ARPABET = {
@@ -78,6 +80,8 @@ _XSAMPA = {pair[:-1]: pair[-1] for pair in _XSAMPA_PAIRS.split()}
 _XSAMPA_TOKEN = re.compile("|".join(map(re.escape, sorted(_XSAMPA, key=len, reverse=True))) + "|[a-z]|(.)", re.DOTALL)
 _XSAMPA_MARK = re.compile(r"_(?:[?BHL]\\|.)|[:\"%~='^`.*|+]|-\\")  # diacritics, length, stress, nasality, syllables
 _STRESS = re.compile(r"(?<=[A-Z])[012]$")  # behind a vowel
+_STRESS_BEFORE = re.compile(r"^(?:[ˈˌ'’ʹ\"%,]+|[012](?=[A-Za-z]))")  # as IPA and X-SAMPA mark a syllable, typed or not
+_NOISE = re.compile(r"\++[a-z]+\++")  # as Sphinx writes what is no speech: +NSN+, ++BREATH++
 _TONE = re.compile(r"(?<=[^\W\d])[0-9]+$")
 _XSAMPA_TIERS = ("mau", "sampa", "phonalign")
 _PLACE = re.compile(r"(?<=[^\W_])_[BIES]$")  # in the word, as Kaldi and Gentle mark it: beginning, inside, end, alone
@@ -101,8 +105,9 @@ def class_in(label: str, alphabet: Alphabet) -> str | None:
     text = label.strip()
     if len(text) > MAX_LABEL:
         return None
-    if text.lower() in _SILENT:
+    if text.lower() in _SILENT or _NOISE.fullmatch(text.lower()):
         return "sil"
+    text = _STRESS_BEFORE.sub("", text) or text
     if alphabet != "x-sampa":
         text = _PLACE.sub("", text)
     if alphabet == "arpabet":

@@ -5,16 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from engine.errors import EngineError
 from engine.formats import audio
-from engine.models.resample import interpolate
-from engine.speech.visemes import INDEX, Cue
+from engine.speech.alphabets import class_anywhere
+from engine.speech.sound import RATE, dithered, speech_samples
+from engine.speech.visemes import Cue
 from engine.take import Array
 
-RATE = 16_000  # Hz, of the acoustic model
 _FRAME_S = 0.01
+_LEAST_S = 0.05  # two windows of the decoder
 _WEIGHT, _BEAM = 2.0, 1e-20  # as PocketSphinx advises for phones alone
 
 
@@ -33,24 +32,25 @@ def listen(path: Path) -> list[Cue]:
     if not available():
         raise EngineError("Hearing phones needs PocketSphinx.", "Install it: pip install 'retake[training]'.")
     sound = audio.read(path)
-    samples = np.asarray(sound.samples, np.float64)
-    mono = samples.mean(axis=1) if samples.ndim > 1 else samples
-    return heard(_at_rate(mono, sound.rate))
+    return heard(speech_samples(sound.samples, sound.rate))
 
 
 def heard(samples: Array) -> list[Cue]:
-    """Return the phones in samples at 16 kHz, (n,) in -1..1."""
+    """Return the phones in samples at 16 kHz, (n,) in -1..1; what is too short to hear anything in has none."""
+    if len(samples) < _LEAST_S * RATE:
+        return []
     decoder = _decoder()
     decoder.start_utt()
-    decoder.process_raw((np.clip(samples, -1, 1) * 32767).astype("<i2").tobytes(), full_utt=True)
+    decoder.process_raw(dithered(samples), full_utt=True)
     decoder.end_utt()
     return [
-        Cue(part.start_frame * _FRAME_S, (part.end_frame + 1) * _FRAME_S, _phone(part.word)) for part in decoder.seg()
+        Cue(part.start_frame * _FRAME_S, (part.end_frame + 1) * _FRAME_S, _phone(part.word))
+        for part in decoder.seg() or ()
     ]
 
 
 def _phone(word: str) -> str:
-    return word if word.lower() in INDEX else "SIL"
+    return word if class_anywhere(word) not in (None, "sil") else "SIL"
 
 
 def _decoder() -> Any:
@@ -59,10 +59,3 @@ def _decoder() -> Any:
     folder = Path(get_model_path()) / "en-us"
     phones = str(folder / "en-us-phone.lm.bin")
     return Decoder(hmm=str(folder / "en-us"), allphone=phones, lw=_WEIGHT, beam=_BEAM, pbeam=_BEAM, loglevel="FATAL")
-
-
-def _at_rate(samples: Array, rate: int) -> Array:
-    if rate == RATE:
-        return samples
-    frames = np.arange(int(len(samples) * RATE / rate)) * rate / RATE
-    return interpolate(samples[:, None], np.minimum(frames, len(samples) - 1))[:, 0]

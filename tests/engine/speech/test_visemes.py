@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from engine.errors import EditError
 from engine.lab.performer.performer import Script, perform, phones
 from engine.lab.performer.visemes import VISEME_OF
 from engine.lab.speech.lipread import read_lips
-from engine.speech.visemes import CLASSES, NAMES, Cue, class_of, classes_over, one_hot
+from engine.speech.visemes import CLASSES, NAMES, Cue, class_of, classes_over, one_hot, shapes
 
 
 def test_eighteen_classes_cover_every_phone_that_can_be_performed() -> None:
@@ -24,7 +26,15 @@ def test_eighteen_classes_cover_every_phone_that_can_be_performed() -> None:
         ("", "sil"),
         (" SIL ", "sil"),
         ("ʃ", "sh"),
-        ("ER0", "ah"),
+        ("ER0", "r"),
+        ("AW1", "aa"),
+        ("HH", "ah"),
+        ("ˈAA", "aa"),
+        ("'aɪ", "aa"),
+        ("y", "uw"),
+        ("Y", "iy"),
+        ("+NSN+", "sil"),
+        ("<sil>", "sil"),
         ("kg", "kg"),
         ("uː", "uw"),
     ],
@@ -52,3 +62,43 @@ def test_bilabials_and_open_vowels_are_read_off_a_performance() -> None:
         middle = int((start + stop) / 2 * 30)
         if symbol != "SIL":
             assert (read[middle] == NAMES.index("mbp")) == (symbol in ("P", "B", "M"))
+
+
+@pytest.mark.parametrize(
+    ("labels", "names"),
+    [
+        ("AW1", "aa uw"),
+        ("aʊ", "aa uw"),
+        ("ay", "aa iy"),
+        ("OY0_E", "ao iy"),
+        ("ˈeɪ", "eh iy"),
+        ("HH IY1", "iy iy"),
+        ("HH W AA1", "w w aa"),
+        ("HH SIL", "ah sil"),
+        ("h uː", "uw uw"),
+        ("HH AW", "aa aa uw"),
+        ("M AA", "mbp aa"),
+    ],
+)
+def test_phones_have_the_shapes_that_the_mouth_goes_through(labels: str, names: str) -> None:
+    cues = [Cue(at / 10, (at + 1) / 10, label) for at, label in enumerate(labels.split())]
+    found = shapes(cues)
+    assert [cue.label for cue in found] == names.split()
+    assert found[0].start_s == 0.0 and found[-1].stop_s == cues[-1].stop_s
+    assert all(before.stop_s == after.start_s for before, after in pairwise(found))
+
+
+def test_where_nothing_is_said_there_are_no_shapes() -> None:
+    assert shapes([]) == () and (classes_over([], frames=3, fps=30) == -1).all()
+
+
+def test_an_h_before_a_pause_does_not_take_the_vowel_after_it() -> None:
+    assert shapes([Cue(0, 0.1, "HH"), Cue(0.4, 0.5, "IY")])[0].label == "ah"
+
+
+@pytest.mark.parametrize("label", ["B", "F"])
+def test_a_contact_of_20_ms_is_seen_wherever_it_falls_between_frames(label: str) -> None:
+    for start_s in np.arange(0.2, 0.2 + 1 / 30, 0.001):
+        cues = [Cue(0, start_s, "AA"), Cue(start_s, start_s + 0.02, label), Cue(start_s + 0.02, 1, "AA")]
+        classes = classes_over(cues, frames=30, fps=30)
+        assert (classes == class_of(label)).sum() == 1 and (classes == class_of("AA")).sum() == 29

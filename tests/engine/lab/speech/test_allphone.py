@@ -21,3 +21,13 @@ def test_silence_is_heard_as_silence_of_the_right_length() -> None:
     cues = allphone.heard(hiss)
     assert cues[0].start_s == 0.0 and cues[-1].stop_s == pytest.approx(2.0, abs=0.1)
     assert sum(cue.stop_s - cue.start_s for cue in cues if cue.label == "SIL") > 1.5
+
+
+@pytest.mark.parametrize("seconds", [0.0, 1 / 16_000, 0.008, 0.03])
+def test_what_is_too_short_to_be_heard_has_no_phones(seconds: float) -> None:
+    assert allphone.heard(np.ones(round(seconds * allphone.RATE))) == []
+
+
+def test_digital_silence_is_heard_as_silence() -> None:
+    pytest.importorskip("pocketsphinx")
+    assert {cue.label for cue in allphone.heard(np.zeros(allphone.RATE))} == {"SIL"}
