@@ -50,39 +50,42 @@ def nearest(boxes: Boxes, slopes: Array, goals: Array, *, covariance: Array, sof
     rows = np.arange(len(found))
     for _ in range(GUESSES):
         here, held = boxes.rows(rows), sides[rows]
-        values, push = _held(here, held, spread[rows], missing[rows], gram[rows], covariance)
+        values, push = _held(here, held, spread[rows], (gram[rows], missing[rows]), covariance)
         found[rows] = np.clip(values, here.low, here.high)
-        stay = np.where(held * push < 0, held, 0.0)  # a bound that would have to pull lets go
-        crossed = np.where(values > here.high + EDGE, 1.0, np.where(values < here.low - EDGE, -1.0, 0.0))
-        sides[rows] = np.where(held == 0, crossed, stay)
-        rows = rows[(sides[rows] != held).any(axis=1)]
-        if not len(rows):
+        crossed = (values > here.high + EDGE).astype(float) - (values < here.low - EDGE)
+        guess = np.where(
+            held == 0, crossed, np.where(held * push < 0, held, 0.0)
+        )  # a bound that would have to pull lets go
+        sides[rows] = guess
+        again = (guess != held).any(axis=1)
+        if not again.any():
             break
+        rows = rows[again]
     return found
 
 
 def _held(
-    boxes: Boxes, sides: Array, spread: Array, missing: Array, gram: Array, covariance: Array
+    boxes: Boxes, sides: Array, spread: Array, equations: tuple[Array, Array], covariance: Array
 ) -> tuple[Array, Array]:
     """Return values, (n, values), when bounds hold those at `sides`, and the push of the bounds on them."""
-    held = sides != 0
-    goals, most = gram.shape[1], int(held.sum(axis=1).max(initial=0))
+    gram, missing = equations
+    held, goals = sides != 0, gram.shape[1]
+    most = int(held.sum(axis=1).max(initial=0))
     if not most:
         pull = np.linalg.solve(gram, missing[..., None])
         return boxes.start + (pull.transpose(0, 2, 1) @ spread)[:, 0], np.zeros_like(sides)
+    rows = np.arange(len(sides))[:, None]
     at = np.argsort(~held, axis=1, kind="stable")[:, :most]  # those that are held first
-    real = np.take_along_axis(held, at, axis=1)
-    system = np.zeros((len(sides), goals + most, goals + most))
+    real = held[rows, at]
+    system = np.empty((len(sides), goals + most, goals + most))
     system[:, :goals, :goals] = gram
-    across = np.take_along_axis(spread, at[:, None], axis=2) * real[:, None]
-    system[:, :goals, goals:], system[:, goals:, :goals] = across, across.transpose(0, 2, 1)
-    among = covariance[at[:, :, None], at[:, None, :]] * (real[:, :, None] & real[:, None, :])
-    system[:, goals:, goals:] = among
-    system[:, np.arange(goals, goals + most), np.arange(goals, goals + most)] += ~real
-    gap = np.where(sides > 0, boxes.high, boxes.low) - boxes.start
-    wanted = np.concatenate([missing, np.take_along_axis(gap, at, axis=1) * real], axis=1)
-    pull = np.linalg.solve(system, wanted[..., None])[..., 0]
+    across = spread.transpose(0, 2, 1)[rows, at] * real[:, :, None]
+    system[:, goals:, :goals], system[:, :goals, goals:] = across, across.transpose(0, 2, 1)
+    system[:, goals:, goals:] = covariance[at[:, :, None], at[:, None, :]] * (real[:, :, None] & real[:, None, :])
+    system.reshape(len(sides), -1)[:, goals * (goals + most + 1) :: goals + most + 1] += ~real
+    gap = (np.where(sides > 0, boxes.high, boxes.low) - boxes.start)[rows, at]
+    pull = np.linalg.solve(system, np.concatenate([missing, gap * real], axis=1)[..., None])[..., 0]
     push = np.zeros_like(boxes.start)
-    np.put_along_axis(push, at, pull[:, goals:] * real, axis=1)
+    push[rows, at] = pull[:, goals:] * real
     change = (pull[:, None, :goals] @ spread)[:, 0] + push @ covariance
     return boxes.start + change, push

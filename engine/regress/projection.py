@@ -42,7 +42,14 @@ STEPS = Steps()
 
 
 def project(
-    weights: Array, asked: Array, columns: Columns, *, hold: Mask, covariance: Array, measurer: FaceMeasurer
+    weights: Array,
+    asked: Array,
+    columns: Columns,
+    *,
+    hold: Mask,
+    covariance: Array,
+    measurer: FaceMeasurer,
+    rounds: int = STEPS.rounds,
 ) -> Array:
     """Return weights, (frames, 52), near `weights` whose controls reach `asked`, (frames, columns), where `hold` says so.
 
@@ -54,6 +61,7 @@ def project(
     Parameters
     ----------
     covariance : (52, 52), zero in the rows and columns of weights that shall not move
+    rounds : of steps, at most
     """
     made, shapes = np.array(weights), np.flatnonzero(covariance.any(axis=0))
     search = _Search(weights[:, shapes], covariance[np.ix_(shapes, shapes)])
@@ -61,7 +69,7 @@ def project(
     active = np.flatnonzero(hold.any(axis=1))
     vectors, miss = goal.missing(made[active], active)
     far = np.abs(miss).max(axis=1, initial=0.0) > STEPS.met_mm
-    for _ in range(STEPS.rounds):
+    for _ in range(rounds):
         active, vectors, miss = active[far], vectors[far], miss[far]
         if not len(active):
             break
