@@ -3,7 +3,8 @@
 Each is ``min 1/2 |x - start|^2 in the metric S^-1 + |J x - goal|^2 / (2 d)`` over ``low <= x <= high``. Its solution goes
 on without a jump as start, goal and slopes do, and a goal that is further away is never met less. Values that their
 bounds hold are found by the primal-dual active set method (Hintermüller, Ito and Kunisch 2003): a guess at them leaves a
-linear system, whose solution makes the next guess.
+linear system, whose solution makes the next guess. Where all guesses at once get no better, one value at a time is guessed
+anew (block principal pivoting, Júdice and Pires 1994), which ends.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ import numpy.typing as npt
 
 from engine.take import Array, Mask
 
-GUESSES = 12  # at most; few frames need more than four
+GUESSES = 80  # at most; few need more than four
+PATIENCE = 3  # guesses that may be no better, before one value at a time is guessed anew
 EDGE = 1e-9  # of a value, by which it is beyond its bound
 
 
@@ -47,7 +49,11 @@ def nearest(boxes: Boxes, slopes: Array, goals: Array, *, covariance: Array, sof
     missing = goals - (slopes @ boxes.start[..., None])[..., 0]
     gram = spread @ slopes.transpose(0, 2, 1) + softness * np.eye(slopes.shape[1])
     found = np.empty_like(boxes.start)
-    rows = np.arange(len(found))
+    rows, fewest, patience = (
+        np.arange(len(found)),
+        np.full(len(found), slopes.shape[2] + 1),
+        np.full(len(found), PATIENCE),
+    )
     for _ in range(GUESSES):
         here, held = boxes.rows(rows), sides[rows]
         values, push = _held(here, held, spread[rows], (gram[rows], missing[rows]), covariance)
@@ -56,11 +62,16 @@ def nearest(boxes: Boxes, slopes: Array, goals: Array, *, covariance: Array, sof
         guess = np.where(
             held == 0, crossed, np.where(held * push < 0, held, 0.0)
         )  # a bound that would have to pull lets go
-        sides[rows] = guess
-        again = (guess != held).any(axis=1)
-        if not again.any():
+        wrong = guess != held
+        count = wrong.sum(axis=1)
+        better = count < fewest[rows]
+        fewest[rows] = np.where(better, count, fewest[rows])
+        patience[rows] = np.where(better, PATIENCE, patience[rows] - 1)
+        last = wrong & (np.cumsum(wrong[:, ::-1], axis=1)[:, ::-1] == 1)
+        sides[rows] = np.where(np.where(patience[rows, None] < 0, last, wrong), guess, held)
+        if not count.any():
             break
-        rows = rows[again]
+        rows = rows[count > 0]
     return found
 
 
