@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.interpolate import CubicSpline
 
 from engine.controls import ALL_CONTROLS
 from engine.extended import bundled_face
@@ -108,12 +109,12 @@ def test_spikes_in_many_curves_are_noise_and_a_blink_beside_a_smile_is_not() -> 
 
 @pytest.mark.parametrize("fps", [30.0, 120.0])
 def test_all_curves_asked_again_stay_where_they_are(fps: float) -> None:
-    """To a tenth: what lies about a frame that is drawn back is drawn back with it, and may come a little after."""
+    """To a fifth: what lies about a frame that is drawn back is drawn back with it, and may come a little after."""
     columns = np.arange(COUNT) < 8
-    rows = np.repeat(PRIOR.faces[::100][:20], round(fps / 6), axis=0)
+    rows = CubicSpline(np.arange(12), PRIOR.faces[::100][:12])(np.arange(0, 11, 3 / fps))
     wish = np.where(columns, rows + 2 * (rows - REST[0]), np.nan)
     once = Plausible(rows, PRIOR).granted(wish, rows, believability=0.5, fps=fps)
     there = np.where(columns, once, rows)
     twice = Plausible(rows, PRIOR).granted(wish, there, believability=0.5, fps=fps)
     moved = np.abs(once - rows)[:, columns].mean()
-    assert np.abs(twice - once)[:, columns].mean() <= 0.1 * moved
+    assert np.abs(twice - once)[:, columns].mean() <= 0.2 * moved
