@@ -11,7 +11,7 @@ from app.preview import movie
 from app.printing import remark, say
 from engine.assets import DEMO_TAKE
 from engine.controls import CONTROL_INDEX, measure
-from engine.editing import Patch, edit_control
+from engine.editing import ControlRequest, Patch, set_control
 from engine.errors import EngineError
 from engine.formats import read_take, write_take
 from engine.take import Take
@@ -32,7 +32,7 @@ def widest_span(take: Take) -> tuple[int, int]:
 
 def close_lips(take: Take, frames: tuple[int, int]) -> Patch:
     """Close the lips over a range of frames; the whole face follows."""
-    return edit_control(take, "lips_vertical", frames, "set", 0.0)
+    return set_control(take, ControlRequest("lips_vertical", frames, "set", 0.0))
 
 
 def write_results(take: Take, edited: Take, frames: tuple[int, int], stem: str) -> list[Path]:

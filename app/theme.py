@@ -111,7 +111,12 @@ def qt_palette(colours: Palette) -> QPalette:
 
 def style_sheet(colours: Palette) -> str:
     """Return the Qt style sheet of a theme."""
-    c = colours
+    parts = (_ground, _buttons, _entries, _menus, _bars)
+    return "".join(part(colours) for part in parts) + "\n"
+
+
+def _ground(c: Palette) -> str:
+    """Return the looks of what everything stands on: windows, panels, labels."""
     return f"""
 * {{ font-size: {FONT_PX}px; color: {c.text}; }}
 QMainWindow, QDialog, QWidget#central {{ background: {c.ground}; }}
@@ -119,7 +124,12 @@ QFrame[panel="true"] {{ background: {c.panel}; border: 1px solid {c.edge}; borde
 QLabel, QCheckBox {{ background: transparent; border: none; }}
 QLabel[quiet="true"] {{ color: {c.quiet}; }}
 QLabel[heading="true"] {{ font-weight: 600; }}
-QLabel[warning="true"] {{ color: {c.warning}; }}
+QLabel[warning="true"] {{ color: {c.warning}; }}"""
+
+
+def _buttons(c: Palette) -> str:
+    """Return the looks of buttons, sliders and boxes to tick."""
+    return f"""
 QToolButton, QPushButton {{
   background: transparent; border: 1px solid transparent; border-radius: 4px; padding: 5px 10px; }}
 QPushButton {{ background: {c.raised}; }}
@@ -140,7 +150,12 @@ QSlider {{ border: 1px solid transparent; border-radius: 4px; min-height: 18px; 
 QCheckBox::indicator {{
   width: 12px; height: 12px; border: 1px solid {c.quiet}; border-radius: 3px; background: {c.ground}; }}
 QCheckBox::indicator:checked {{ background: {c.accent}; border-color: {c.accent}; image: url("{ICONS}/{c.check}.svg"); }}
-QCheckBox {{ border: 1px solid transparent; border-radius: 4px; padding: 2px; spacing: 8px; }}
+QCheckBox {{ border: 1px solid transparent; border-radius: 4px; padding: 2px; spacing: 8px; }}"""
+
+
+def _entries(c: Palette) -> str:
+    """Return the looks of what is typed into and chosen from."""
+    return f"""
 QDoubleSpinBox, QSpinBox, QLineEdit, QComboBox, QPlainTextEdit, QListView, QTreeView, QTableView {{
   background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; padding: 3px 6px;
   selection-background-color: {c.accent}; selection-color: {c.on_accent}; }}
@@ -154,7 +169,12 @@ QComboBoxPrivateContainer {{ background: {c.panel}; border: none; }}
 QFileDialog QToolButton {{ padding: 2px; }}
 QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
 QHeaderView {{ background: {c.panel}; }}
-QHeaderView::section {{ background: {c.panel}; color: {c.quiet}; border: none; padding: 3px 6px; }}
+QHeaderView::section {{ background: {c.panel}; color: {c.quiet}; border: none; padding: 3px 6px; }}"""
+
+
+def _menus(c: Palette) -> str:
+    """Return the looks of menus and tooltips."""
+    return f"""
 QMenuBar {{ background: {c.ground}; }}
 QMenuBar::item {{ padding: 4px 8px; background: transparent; }}
 QMenuBar::item:selected {{ background: {c.raised}; border-radius: 4px; }}
@@ -163,7 +183,12 @@ QMenu::item {{ padding: 5px 24px 5px 12px; border-radius: 4px; }}
 QMenu::item:selected {{ background: {c.edge}; }}
 QMenu::item:disabled {{ color: {c.faint}; }}
 QMenu::separator {{ height: 1px; background: {c.edge}; margin: 4px 8px; }}
-QToolTip {{ background: {c.raised}; color: {c.text}; border: 1px solid {c.edge}; padding: 4px; }}
+QToolTip {{ background: {c.raised}; color: {c.text}; border: 1px solid {c.edge}; padding: 4px; }}"""
+
+
+def _bars(c: Palette) -> str:
+    """Return the looks of scroll bars, splitters and bars of progress."""
+    return f"""
 QScrollBar:horizontal {{ height: 10px; background: transparent; margin: 0; }}
 QScrollBar::handle:horizontal {{ background: {c.edge}; border-radius: 4px; min-width: 24px; margin: 1px; }}
 QScrollBar:vertical {{ width: 10px; background: transparent; margin: 0; }}
@@ -176,5 +201,4 @@ QScrollArea, QScrollArea > QWidget > QWidget {{ background: transparent; border:
 QSplitter::handle {{ background: transparent; }}
 QProgressBar {{ background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; text-align: center; height: 14px; }}
 QProgressBar::chunk {{ background: {c.accent}; border-radius: 3px; }}
-QFrame#banner {{ background: {c.raised}; border: 1px solid {c.warning}; border-radius: 6px; }}
-"""
+QFrame#banner {{ background: {c.raised}; border: 1px solid {c.warning}; border-radius: 6px; }}"""

@@ -14,8 +14,9 @@ import numpy.typing as npt
 
 from engine import assets
 from engine.errors import AssetError, EditError, EngineError
-from engine.formats.archive import arrays_of
-from engine.formats.atomic import write_bytes
+from engine.formats.base.archive import arrays_of
+from engine.formats.base.atomic import write_bytes
+from engine.jaw import drawable
 from engine.take import SHAPE_INDEX, SHAPES, Array, Take
 
 BUNDLED = assets.HEAD
@@ -25,7 +26,6 @@ FARTHEST_MM = 1e6
 MAX_NAME = 80  # letters shown on screen
 UNTOLD = 0.02  # a weight below this is not worth a word
 MAX_NAMES = 10_000  # of shapes, of landmarks
-_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,16 +106,6 @@ class Character:
             raise AssetError(f"The character {self.name!r} has no landmark {missing[0]!r}.")
         vertices = [self.landmarks[name] for name in names]
         return self.neutral[vertices].astype(np.float64), self.deltas[:, vertices].astype(np.float64)
-
-
-def drawable(weights: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
-    """Limit (52,) weights to what a mesh can show: 0..1, and lips that close no further than the jaw has opened.
-
-    mouthClose takes back the jaw's motion on the lips; without the jaw it would turn them inside out.
-    """
-    used = np.clip(weights, 0.0, 1.0)
-    used[_CLOSE] = min(used[_CLOSE], used[_JAW])
-    return used
 
 
 def without_lacking(take: Take, character: Character) -> Take:

@@ -14,9 +14,8 @@ import numpy as np
 
 from engine.character import Character, bundled
 from engine.errors import EditError
-from engine.take import SHAPE_INDEX, SHAPES, Array
-
-_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
+from engine.jaw import follow, limited
+from engine.take import SHAPES, Array
 
 
 @dataclass(frozen=True)
@@ -110,23 +109,13 @@ class Measurer:
         unit = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
         basis = self._basis.reshape(len(SHAPES), -1, 3)
         slope = (unit.transpose(1, 0, 2) @ basis.transpose(1, 2, 0)).transpose(1, 0, 2)  # many times as fast as einsum
-        joined = weights[:, _CLOSE] > weights[:, _JAW]  # there mouthClose follows the jaw instead of its own weight
-        slope[joined, :, _JAW] += slope[joined, :, _CLOSE]
-        slope[joined, :, _CLOSE] = 0.0
+        follow(slope, weights)
         return np.asarray(slope)
 
     def limits(self, samples: Array) -> Array:
         """Return what a face can reach, (controls, 2) in mm, from weights of many faces, (faces, 52)."""
         measured = self.measure(samples)
         return np.stack([measured.min(axis=0), measured.max(axis=0)], axis=1)
-
-
-def limited(weights: Array) -> Array:
-    """Return weights, (frames, 52), whose lips close no further than the jaw has opened, as the character is drawn."""
-    close = np.minimum(weights[:, _CLOSE], np.maximum(weights[:, _JAW], 0.0))
-    drawn = np.array(weights)
-    drawn[:, _CLOSE] = close
-    return drawn
 
 
 @lru_cache(maxsize=1)

@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.character import Character, bundled
-from engine.controls import ALL_CONTROLS, CONTROLS, EXTENDED, limited
+from engine.controls import ALL_CONTROLS, CONTROLS, EXTENDED
+from engine.jaw import CLOSE, JAW, ahead, limited
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask
 
 EXTENDED_INDEX: dict[str, int] = {control.name: len(CONTROLS) + index for index, control in enumerate(EXTENDED)}
-_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 _LENGTH, _PLACE, _ANGLE = range(3)
 # Of each control, the vectors that it is the mean over, each by its row, what is read of it, and along which axis.
 _TERMS: tuple[tuple[tuple[int, int, int], ...], ...] = (
@@ -48,8 +48,8 @@ class Gauges:
         place, rows, kind, axis = np.array(terms).T
         self._rest, self._basis = rest[rows], basis[:, rows].reshape(len(SHAPES), -1)
         self._slopes = np.ascontiguousarray(basis[shapes][:, rows].transpose(1, 2, 0))  # (terms, 3, shapes)
-        self._close = basis[_CLOSE, rows]  # (terms, 3)
-        self._jaw_at, self._close_at = np.flatnonzero(shapes == _JAW), np.flatnonzero(shapes == _CLOSE)
+        self._close = basis[CLOSE, rows]  # (terms, 3)
+        self._jaw_at, self._close_at = np.flatnonzero(shapes == JAW), np.flatnonzero(shapes == CLOSE)
         self._first = np.flatnonzero(np.diff(place, prepend=-1))  # term of each control
         self._pairs = np.flatnonzero(np.diff(self._first, append=len(place)) > 1)  # controls of two terms
         self._places, self._angles = np.flatnonzero(kind == _PLACE), np.flatnonzero(kind == _ANGLE)
@@ -96,7 +96,7 @@ class Gauges:
     @staticmethod
     def joined(weights: Array) -> Mask:
         """Return in which frames mouthClose is ahead of the jaw, and follows that instead of its own weight."""
-        return np.asarray(weights[:, _CLOSE] > weights[:, _JAW])
+        return ahead(weights)
 
     def _joined(self, slopes: Array, of_close: Array, joined: Mask) -> Array:
         if joined.any():

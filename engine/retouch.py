@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from engine.easing import ease
-from engine.editing import Patch
 from engine.errors import EditError
-from engine.take import SHAPES, Array, Mask, Take
-from engine.words import counted
+from engine.patch import Patch
+from engine.take import SHAPES, Array, Mask, Take, require_frames
 
 PASTE_FEATHER_S = 0.13  # beside what is pasted; four frames at 30 fps, as long as a lip takes to open
+SMOOTH_FEATHER_S = 0.15  # within a smoothed range, at either end
 LOWEST_HZ = 0.001
 ORDER = 2  # filtered once in each direction, so the slope is that of order 4 and nothing shifts in time
 
@@ -24,8 +23,9 @@ def _patch(take: Take, start: int, weights: Array, *, found: Mask | None = None)
 def replace_weight(take: Take, shape: int, start: int, curve: Array) -> Patch:
     """Put a curve, (n,), in place of one weight from frame `start`, kept within the range 0..1 or the recorded one."""
     stop = start + len(curve)
-    if not 0 <= start < stop <= len(take) or not 0 <= shape < len(SHAPES):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
+    require_frames(take, start, stop)
+    if not 0 <= shape < len(SHAPES):
+        raise EditError(f"There is no shape {shape}.", f"Shapes are counted from 0 to {len(SHAPES) - 1}.")
     if not np.isfinite(curve).all():
         raise EditError("A weight must be a finite number.")
     weights = take.weights[start:stop].copy()
@@ -63,15 +63,16 @@ def paste(take: Take, start: int, weights: Array, *, feather_s: float = PASTE_FE
     return _patch(take, first, rows, found=found)
 
 
-def smooth(take: Take, frames: tuple[int, int], cutoff_hz: float, *, feather_s: float = 0.15) -> Patch:
+def smooth(take: Take, frames: tuple[int, int], cutoff_hz: float, *, feather_s: float = SMOOTH_FEATHER_S) -> Patch:
     """Low-pass all weights over a range of frames with a Butterworth filter of zero phase, its ends feathered.
 
     The filter runs over the take around the range, so that the range's ends need no guess of what lies beyond.
     Raises `EditError` for a cutoff that is not between 0 and half the frame rate.
     """
+    from scipy.signal import butter, sosfiltfilt  # here: asking for a paste needs no filters
+
     start, stop = frames
-    if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
+    require_frames(take, start, stop)
     if not LOWEST_HZ <= cutoff_hz < take.fps / 2:
         raise EditError(f"The cutoff must be above {LOWEST_HZ:g} and below {take.fps / 2:g} Hz, half the frame rate.")
     if len(take) < 3:

@@ -170,3 +170,9 @@ def timecode(time_s: float, fps: float) -> str:
     seconds, sign = abs(frame) // whole, "-" if frame < 0 else ""
     digits = max(2, len(str(whole - 1)))
     return f"{sign}{seconds // 3600:02d}:{seconds // 60 % 60:02d}:{seconds % 60:02d}:{abs(frame) % whole:0{digits}d}"
+
+
+def require_frames(take: Take, start: int, stop: int) -> None:
+    """Raise `EditError` where frames from `start` up to, and without, `stop` are none or not within a take."""
+    if not 0 <= start < stop <= len(take):
+        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from engine.character import bundled
-from engine.formats.capture import Markers
+from engine.formats.markers.capture import Markers
 from engine.spacetime.layout import standard
 from engine.take import SHAPE_INDEX
 

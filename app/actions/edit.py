@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
@@ -13,17 +12,14 @@ from app.inspector.value import closes
 from app.session import Session
 from app.session.commands import EditCommand
 from app.session.curve_table import CURVES
-from app.session.inference import Inference
-from app.session.session import DEFAULT_BELIEVABILITY
+from app.session.edits import Editing
 from app.spans.filling import Filling
 from engine.controls import CONTROLS
+from engine.editing import DEFAULT_BELIEVABILITY, PasteRequest, SmoothRequest
 from engine.errors import EngineError
 from engine.project.records import FILL
 from engine.take import Array
 from engine.words import counted
-
-if TYPE_CHECKING:
-    from engine.editing import Dragger, Patch
 
 EASE_S = 0.16  # beside a selection that is set to a value
 CLOSE_S, OPEN_S = 0.08, 0.14  # of a blink: lids fall faster than they rise
@@ -40,7 +36,7 @@ class EditActions(QObject):
 
     told = Signal(str)  # a short remark for the status bar
 
-    def __init__(self, session: Session, inference: Inference, curves: CurvesPanel, filling: Filling) -> None:
+    def __init__(self, session: Session, inference: Editing, curves: CurvesPanel, filling: Filling) -> None:
         super().__init__()
         self._session, self._inference, self._curves, self._filling = session, inference, curves, filling
         self._copied: Array | None = None
@@ -53,13 +49,13 @@ class EditActions(QObject):
         """Take back the last step."""
         if not self._inference.busy:
             self._filling.drop()
-            self._session.undo.undo()
+            self._session.document.undo.undo()
 
     def redo(self) -> None:
         """Do the step that was taken back again."""
         if not self._inference.busy:
             self._filling.drop()
-            self._session.undo.redo()
+            self._session.document.undo.redo()
 
     def cancel(self) -> None:
         """Drop the gesture, the fill or the preview under way; with none, put a notice away, then clear the selection."""
@@ -71,46 +67,46 @@ class EditActions(QObject):
         elif self._inference.busy:
             self._inference.cancel()
         elif not (self.let_go() or self.stop_else() or self.put_away()):
-            self._session.select(None)
+            self._session.view.select(None)
 
     def close_here(self) -> None:
         """Bring lips or eyelids together on the selection, or around the playhead."""
-        lane = self._session.lane
+        lane = self._session.view.lane
         if closes(lane):
             blinks = CONTROLS[CURVES[lane].column].area == "eyelids"
             self._set_curve(0.0, f"close {CURVES[lane].title}", eases_s=(CLOSE_S, OPEN_S) if blinks else None)
 
     def set_value(self, value: float) -> None:
         """Set the active curve at the playhead, or over the selection, to a value."""
-        curve = CURVES[self._session.lane]
+        curve = CURVES[self._session.view.lane]
         self._set_curve(value, f"set {curve.title} to {curve.shown(value)}")
 
     def _set_curve(self, value: float, title: str, eases_s: tuple[float, float] | None = None) -> None:
         session = self._session
         if self._inference.busy:
             return
-        frames = session.selection or (session.playhead, session.playhead + 1)
-        ease_s = EASE_S if session.selection else session.radius_s
-        before, after = (seconds * session.take.fps for seconds in eases_s or (ease_s, ease_s))
-        curve = session.curve(session.lane)
+        frames = session.view.selection or (session.view.playhead, session.view.playhead + 1)
+        ease_s = EASE_S if session.view.selection else session.view.radius_s
+        before, after = (seconds * session.document.take.fps for seconds in eases_s or (ease_s, ease_s))
+        curve = session.document.curve(session.view.lane)
         start, asked = eased_to(curve, frames, value, before_frames=before, after_frames=after)
-        self._curves.tool.ask(session.lane, start, asked)
+        self._curves.tool.ask(session.view.lane, start, asked)
         self._inference.finish(title, kind="set", inputs={"value": value, "frames": list(frames)})
 
     def hit_exactly(self) -> None:
         """Let edits hit their curve, believable or not; or let them be believable again."""
-        believability = 0.0 if self._session.believability else DEFAULT_BELIEVABILITY
-        self._session.set_brush(believability=believability)
+        believability = 0.0 if self._session.view.believability else DEFAULT_BELIEVABILITY
+        self._session.view.set_brush(believability=believability)
 
     def go_there(self) -> None:
         """Make the last edit again so that it goes where it was pulled, believable or not."""
-        self._session.set_brush(believability=0.0)
+        self._session.view.set_brush(believability=0.0)
         self.again()
 
     def again(self) -> None:
         """Take the last edit back and make it again with the settings as they are now; a fill, as it was made."""
         session = self._session
-        step = session.undo.command(session.undo.index() - 1)
+        step = session.document.undo.command(session.document.undo.index() - 1)
         if isinstance(step, EditCommand) and step.edit.kind == FILL and not self._inference.busy:
             self._fill_again(step)
             return
@@ -127,46 +123,34 @@ class EditActions(QObject):
         try:
             self._filling.make_again(step.edit.inputs)
         except EngineError as error:
-            self._session.undo.redo()
+            self._session.document.undo.redo()
             self._filling.failed.emit(error.sentence, error.advice)
 
     def copy(self) -> None:
         """Remember the weights of the selection, or of the frame at the playhead."""
         session = self._session
-        start, stop = session.selection or (session.playhead, session.playhead + 1)
-        self._copied = session.take.weights[start:stop]
+        start, stop = session.view.selection or (session.view.playhead, session.view.playhead + 1)
+        self._copied = session.document.take.weights[start:stop]
         self.told.emit(f"copied {counted(stop - start, 'frame')}")
 
     def paste(self) -> None:
         """Put what was copied in place from the playhead on."""
-        copied, start = self._copied, self._session.playhead
+        copied, start = self._copied, self._session.view.playhead
         if copied is None or self._inference.busy:
             return
-
-        def verb(dragger: Dragger) -> Patch:
-            from engine.retouch import paste
-
-            return paste(dragger.take, start, copied)
-
-        self._inference.run(verb)
+        self._inference.run(PasteRequest(start, copied))
         self._inference.finish(f"paste {counted(len(copied), 'frame')}", kind="paste", inputs={"start": start})
 
     def preview_smoothing(self, cutoff_hz: float) -> None:
         """Show what a Butterworth filter does to the selection, or the whole take."""
-        frames = self._session.selection or (0, len(self._session.take))
-
-        def verb(dragger: Dragger) -> Patch:
-            from engine.retouch import smooth
-
-            return smooth(dragger.take, frames, cutoff_hz)
-
-        self._inference.run(verb)
+        frames = self._session.view.selection or (0, len(self._session.document.take))
+        self._inference.run(SmoothRequest(frames, cutoff_hz))
 
     def smooth(self) -> None:
         """Smooth at the cutoff that the inspector shows."""
         cutoff_hz = self.cutoff_hz()
         self.preview_smoothing(cutoff_hz)
-        self._inference.finish(f"smooth at {cutoff_hz:g} Hz", kind="smooth", inputs={"cutoff_hz": cutoff_hz})
+        self._inference.finish(f"smooth at {cutoff_hz:g} Hz", kind="smooth")
 
     def accept(self) -> None:
         """Keep the fill that is shown."""
@@ -174,40 +158,40 @@ class EditActions(QObject):
 
     def wider_brush(self) -> None:
         """Let the brush move more frames."""
-        self._session.set_brush(radius_s=self._session.radius_s * RADIUS_STEP)
+        self._session.view.set_brush(radius_s=self._session.view.radius_s * RADIUS_STEP)
 
     def narrower_brush(self) -> None:
         """Let the brush move fewer frames."""
-        self._session.set_brush(radius_s=self._session.radius_s / RADIUS_STEP)
+        self._session.view.set_brush(radius_s=self._session.view.radius_s / RADIUS_STEP)
 
     def drag_tool(self) -> None:
         """Work with the Drag tool."""
-        self._session.choose_tool("drag")
+        self._session.view.choose_tool("drag")
 
     def draw_tool(self) -> None:
         """Work with the Draw tool."""
-        self._session.choose_tool("draw")
+        self._session.view.choose_tool("draw")
 
     def scale_tool(self) -> None:
         """Work with the Scale tool."""
-        self._session.choose_tool("scale")
+        self._session.view.choose_tool("scale")
 
     def pin_tool(self) -> None:
         """Work with the Pin tool."""
-        self._session.choose_tool("pin")
+        self._session.view.choose_tool("pin")
 
     def mark_tool(self) -> None:
         """Work with the Mark tool."""
-        self._session.choose_tool("mark")
+        self._session.view.choose_tool("mark")
 
     def live_tool(self) -> None:
         """Work with a phone's stream."""
-        self._session.choose_tool("live")
+        self._session.view.choose_tool("live")
 
     def show_removed(self) -> None:
         """Draw what the Clean tool would remove, or not."""
-        self._session.show_removed(shown=not self._session.shows_removed)
+        self._session.view.show_removed(shown=not self._session.view.shows_removed)
 
     def clean_tool(self) -> None:
         """Work with the Clean tool."""
-        self._session.choose_tool("clean")
+        self._session.view.choose_tool("clean")

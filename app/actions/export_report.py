@@ -12,7 +12,7 @@ from engine.words import NAME_LENGTH, counted, plain
 
 def export_report(session: Session, path: Path, *, saved: bool) -> tuple[str, str]:
     """Return what was written to a file, and what of the session is lost with it: all that is no curve, unless a project has it."""
-    take = session.take
+    take = session.document.take
     name = plain(path.name, longest=NAME_LENGTH)
     length = timecode(take.duration_s, take.fps)
     wrote = f"Wrote {name}: {counted(len(take), 'frame')} at {take.fps:g} fps, {length}."
@@ -24,16 +24,16 @@ def export_report(session: Session, path: Path, *, saved: bool) -> tuple[str, st
 
 def _beside_the_curves(session: Session) -> list[str]:
     """Return what there is beside the curves, in words."""
-    marks = session.marks
+    marks = session.document.marks
     marked = sum(span.kind != "lost" for span in marks.spans)
     counts = (
         (len(marks.notes), "note"),
         (len(marks.pins), "pin"),
         (marked, "marked span"),
-        (session.undo.index(), "step to undo", "steps to undo"),
+        (session.document.undo.index(), "step to undo", "steps to undo"),
     )
     found = [counted(count, *words) for count, *words in counts if count]
-    found += ["the visemes"] if session.visemes is not None else []
+    found += ["the visemes"] if session.document.visemes is not None else []
     words = {"audio": "the sound", "video": "the reference video"}
     return found + [words[medium.kind] for medium in marks.media if medium.kind in words]
 

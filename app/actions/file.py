@@ -20,11 +20,12 @@ from app.settings import Settings
 from app.widgets.saving import ask_where, beside, may_replace
 from app.widgets.text import message_box
 from engine.errors import EngineError
-from engine.formats import FORMATS, cues, livelink_folder, write_take
-from engine.formats.atomic import sweep
-from engine.formats.importing import Imported
-from engine.formats.livelink_folder import CARD
-from engine.formats.reading import Sides
+from engine.formats import FORMATS, cues, write_take
+from engine.formats.base.atomic import sweep
+from engine.formats.base.reading import Sides
+from engine.formats.livelink import folder as livelink_folder
+from engine.formats.livelink.folder import CARD
+from engine.formats.livelink.importing import Imported
 from engine.project import ENDING
 from engine.take import Take
 from engine.words import NAME_LENGTH, plain
@@ -85,7 +86,7 @@ class FileActions(QObject):
         self._given_up = None
         if self._keeper.holds(path):
             self.when_safe(partial(self._reopen, path))
-        elif self._session.edited:
+        elif self._session.document.edited:
             self._ask(partial(self.opening.read, path), discard=self._agree)  # before it is read, which may take long
         else:
             self.opening.read(path)
@@ -96,7 +97,12 @@ class FileActions(QObject):
 
     def _edits(self) -> tuple[object, ...]:
         session = self._session
-        return session.original, session.undo.index(), session.undo.count(), session.marks
+        return (
+            session.document.original,
+            session.document.undo.index(),
+            session.document.undo.count(),
+            session.document.marks,
+        )
 
     def _reopen(self, path: Path) -> None:
         self._keeper.release()
@@ -163,7 +169,7 @@ class FileActions(QObject):
     def _is_another_take(self, path: Path) -> bool:
         """Whether a file belongs to a take of several files that is not open."""
         try:
-            return livelink_folder.is_one(path) and livelink_folder.table_of(path) != self._session.path
+            return livelink_folder.is_one(path) and livelink_folder.table_of(path) != self._session.document.path
         except EngineError:
             return True  # opening it says what is wrong
 
@@ -187,24 +193,24 @@ class FileActions(QObject):
 
     def save_as(self) -> bool:
         """Choose a file and save the project: the original, every edit, and what can be undone."""
-        suggested = beside(self._session.path, f"{Path(self._session.name).stem}{ENDING}")
+        suggested = beside(self._session.document.path, f"{Path(self._session.document.name).stem}{ENDING}")
         kinds = {f"Retake project (*{ENDING})": ENDING}
         path, _ = ask_where(self._window, "Save the project", suggested, kinds)
         return path is not None and self._save_to(path)
 
     def export(self) -> bool:
         """Choose a file and write the edited take as other programs read it."""
-        suggested = beside(self._session.path, f"{Path(self._session.name).stem}_edited.csv")
+        suggested = beside(self._session.document.path, f"{Path(self._session.document.name).stem}_edited.csv")
         path, kind = ask_where(self._window, "Export the take", suggested, ENDINGS)
         if path is None or (self._is_original(path) and not may_replace(self._window, ORIGINAL.format(path.name))):
             return False
         try:
-            write_take(self._session.take, path, EXPORTS.get(kind, "automatic"))
+            write_take(self._session.document.take, path, EXPORTS.get(kind, "automatic"))
         except EngineError as error:
             self.told.emit(error.sentence, error.advice)
             return False
         self._settings.remember(path)
-        saved = self._keeper.path is not None and not self._session.edited
+        saved = self._keeper.path is not None and not self._session.document.edited
         self.wrote.emit(*export_report(self._session, path, saved=saved))
         return True
 
@@ -227,14 +233,16 @@ class FileActions(QObject):
 
     def load_character(self) -> None:
         """Choose a head to show the take on, and to carry it to by default; none goes back to the bundled one."""
-        kinds = "Heads (*.npz *.glb *.gltf *.vrm *.obj)"
+        kinds = "Heads (*.npz *.glb *.gltf *.vrm *.obj *.ply *.stl)"
         name, _ = QFileDialog.getOpenFileName(self._window, "Show on another head", "", kinds)
         self.character_chosen.emit(Path(name) if name else None)
 
     def when_safe(self, then: Callable[[], None], otherwise: Callable[[], None] = lambda: None) -> None:
         """Do what closes the open take: at once, or when its edits are saved, or never, as the user says."""
         if not self._keeper.when_idle(partial(self._ask, then, otherwise)):
-            self.told.emit(f"{self._session.name} is being saved; then it is closed.", "You may go on working.")
+            self.told.emit(
+                f"{self._session.document.name} is being saved; then it is closed.", "You may go on working."
+            )
 
     def _ask(
         self,
@@ -243,13 +251,13 @@ class FileActions(QObject):
         *,
         discard: Callable[[], None] | None = None,
     ) -> None:
-        if not self._session.edited:
+        if not self._session.document.edited:
             then()
             return
         answer = QMessageBox.question(
             self._window,
             "Unsaved edits",
-            f"{plain(self._session.name, longest=NAME_LENGTH)} has edits that are not saved.",
+            f"{plain(self._session.document.name, longest=NAME_LENGTH)} has edits that are not saved.",
             Answer.Save | Answer.Discard | Answer.Cancel,
         )
         if answer == Answer.Discard:
@@ -289,9 +297,9 @@ class FileActions(QObject):
 
     def _is_original(self, path: Path) -> bool:
         """Return whether a file is the recording that is open, or has the name of the one a project was made of."""
-        opened = self._session.path
+        opened = self._session.document.path
         same = opened is not None and opened.exists() and path.exists() and path.samefile(opened)
-        return path.exists() and (same or path.name == self._session.original.name)
+        return path.exists() and (same or path.name == self._session.document.original.name)
 
 
 def _sweep_all(folders: Iterable[Path]) -> None:

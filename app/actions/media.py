@@ -54,7 +54,7 @@ class MediaActions(QObject):
 
     def locate(self, kind: str) -> None:
         """Choose the file that takes the place of the one that is missing."""
-        record = self._session.marks.medium(kind)
+        record = self._session.document.marks.medium(kind)
         if record is not None and (path := self._chosen(kind, f"Where is {project.name_of(record)}?")):
             self._media.locate(kind, path)
 
@@ -81,7 +81,7 @@ class MediaActions(QObject):
         self._nudge("video", 1)
 
     def _nudge(self, kind: str, frames: int) -> None:
-        self._media.move(kind, self._session.offset_s(kind) + frames / self._session.take.fps)
+        self._media.move(kind, self._session.document.offset_s(kind) + frames / self._session.document.take.fps)
 
     def _chosen(self, kind: str, title: str) -> Path | None:
         endings = " ".join(f"*{ending}" for ending in ENDINGS[kind])

@@ -38,6 +38,14 @@ class TimeActions(QObject):
         """Play backwards, faster each time."""
         self._transport.faster(-1)
 
+    def play_slowly(self) -> None:
+        """Play forwards at half the speed, slower each time."""
+        self._transport.slower(1)
+
+    def play_backwards_slowly(self) -> None:
+        """Play backwards at half the speed, slower each time."""
+        self._transport.slower(-1)
+
     def stop(self) -> None:
         """Stand still."""
         self._transport.run(0.0)
@@ -51,77 +59,77 @@ class TimeActions(QObject):
         if self._filling.variants:
             self._filling.choose(self._filling.chosen + 1)
         else:
-            self._session.move_playhead(self._session.playhead + 1)
+            self._session.view.move_playhead(self._session.view.playhead + 1)
 
     def previous_frame(self) -> None:
         """Go one frame back, or to the variant before."""
         if self._filling.variants:
             self._filling.choose(self._filling.chosen - 1)
         else:
-            self._session.move_playhead(self._session.playhead - 1)
+            self._session.view.move_playhead(self._session.view.playhead - 1)
 
     def first_frame(self) -> None:
         """Go to the beginning."""
-        self._session.move_playhead(0)
+        self._session.view.move_playhead(0)
 
     def last_frame(self) -> None:
         """Go to the end."""
-        self._session.move_playhead(len(self._session.take) - 1)
+        self._session.view.move_playhead(len(self._session.document.take) - 1)
 
     def next_span(self) -> None:
         """Go to the next flag, or to the next span and choose it."""
-        later = [stop for stop in self._stops() if stop[0] > self._session.playhead]
+        later = [stop for stop in self._stops() if stop[0] > self._session.view.playhead]
         self._go_to(min(later, key=lambda stop: stop[0], default=None))
 
     def previous_span(self) -> None:
         """Go to the flag before, or to the span before and choose it."""
-        earlier = [stop for stop in self._stops() if stop[0] < self._session.playhead]
+        earlier = [stop for stop in self._stops() if stop[0] < self._session.view.playhead]
         self._go_to(max(earlier, key=lambda stop: stop[0], default=None))
 
     def _stops(self) -> list[tuple[int, tuple[int, int] | None]]:
         """Return the frames to stop at, each with what to select there: spans, and flags that begin at none."""
-        spans = {span.start: (span.start, span.stop) for span in self._session.marks.spans}
-        flags = {flag.start for flag in self._session.flags or ()}
+        spans = {span.start: (span.start, span.stop) for span in self._session.document.marks.spans}
+        flags = {flag.start for flag in self._session.document.flags or ()}
         return [*spans.items(), *((frame, None) for frame in flags - set(spans))]
 
     def _go_to(self, stop: tuple[int, tuple[int, int] | None] | None) -> None:
         if stop is None:
             return
         frame, chosen = stop
-        within = self._session.selection
+        within = self._session.view.selection
         if chosen is not None:
-            self._session.select(chosen)
+            self._session.view.select(chosen)
         elif within is not None and not within[0] <= frame < within[1]:
-            self._session.select(None)  # else playing from the flag would leap back into the selection
-        self._session.move_playhead(frame)
-        found = [flag for flag in self._session.flags or () if flag.start == frame]
+            self._session.view.select(None)  # else playing from the flag would leap back into the selection
+        self._session.view.move_playhead(frame)
+        found = [flag for flag in self._session.document.flags or () if flag.start == frame]
         self.told.emit(max(found, key=lambda flag: flag.weight).sentence if found else "")
 
     def set_in(self) -> None:
         """Let the selection begin at the playhead."""
-        _, stop = self._session.selection or (0, len(self._session.take))
-        self._session.select((self._session.playhead, max(stop, self._session.playhead + 1)))
+        _, stop = self._session.view.selection or (0, len(self._session.document.take))
+        self._session.view.select((self._session.view.playhead, max(stop, self._session.view.playhead + 1)))
 
     def set_out(self) -> None:
         """Let the selection end at the playhead."""
-        start, _ = self._session.selection or (0, 0)
-        self._session.select((min(start, self._session.playhead), self._session.playhead + 1))
+        start, _ = self._session.view.selection or (0, 0)
+        self._session.view.select((min(start, self._session.view.playhead), self._session.view.playhead + 1))
 
     def clear_selection(self) -> None:
         """Select nothing."""
-        self._session.select(None)
+        self._session.view.select(None)
 
     def frame_all(self) -> None:
         """Show the whole take."""
-        self._session.set_view(0.0, len(self._session.take) - 1.0)
+        self._session.view.set_range(0.0, len(self._session.document.take) - 1.0)
 
     def zoom_in(self) -> None:
         """Show fewer frames around the playhead."""
-        self._session.zoom_view(1.5, self._session.playhead)
+        self._session.view.zoom(1.5, self._session.view.playhead)
 
     def zoom_out(self) -> None:
         """Show more frames around the playhead."""
-        self._session.zoom_view(1 / 1.5, self._session.playhead)
+        self._session.view.zoom(1 / 1.5, self._session.view.playhead)
 
     def next_lane(self) -> None:
         """Work on the next curve."""
@@ -132,11 +140,11 @@ class TimeActions(QObject):
         self._step_lane(-1)
 
     def _step_lane(self, by: int) -> None:
-        lanes = self._session.lanes
-        at = lanes.index(self._session.lane) + by
+        lanes = self._session.view.lanes
+        at = lanes.index(self._session.view.lane) + by
         if 0 <= at < len(lanes):
-            self._session.choose_lane(lanes[at])
+            self._session.view.choose_lane(lanes[at])
 
     def expand_lane(self) -> None:
         """Show the weights under the active control, or put them away."""
-        self._session.expand(self._session.lane)
+        self._session.view.expand(self._session.view.lane)

@@ -27,6 +27,18 @@ class ViewActions(QObject):
         """See the face as edited."""
         self._preview.show_view("After")
 
+    def view_wipe(self) -> None:
+        """See the face as recorded left of a line and as edited right of it."""
+        self._preview.show_view("Wipe")
+
+    def wipe_left(self) -> None:
+        """Move the line between before and after to the left."""
+        self._preview.step_wipe(-1)
+
+    def wipe_right(self) -> None:
+        """Move the line between before and after to the right."""
+        self._preview.step_wipe(1)
+
     def view_split(self) -> None:
         """See the face as recorded and as edited, side by side."""
         self._preview.show_view("Split")

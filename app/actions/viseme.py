@@ -35,11 +35,14 @@ class VisemeActions(QObject):
         self._session, self._lane, self._window = session, lane, window
         self.reading = LatestWins(_read, name="visemes")
         self.reading.done.connect(self._arrived)
-        self.reading.failed.connect(lambda _, sentence, advice: self.failed.emit(sentence, advice))
+        self.reading.failed.connect(self._refused)
+
+    def _refused(self, request: object, sentence: str, advice: str) -> None:
+        self.failed.emit(sentence, advice)
 
     def attach(self, path: Path) -> None:
         """Read a file of phones or mouth cues and lay it beside the open take."""
-        self.reading.submit((path, self._session.recorded))
+        self.reading.submit((path, self._session.document.recorded))
 
     def attach_visemes(self) -> None:
         """Choose what is said when: a TextGrid or mouth cues."""
@@ -50,8 +53,8 @@ class VisemeActions(QObject):
 
     def name_viseme(self) -> None:
         """Type what is said at the playhead."""
-        lane, session = self._session.visemes, self._session
-        index = lane.at(session.playhead / session.take.fps) if lane is not None else None
+        lane, session = self._session.document.visemes, self._session
+        index = lane.at(session.view.playhead / session.document.take.fps) if lane is not None else None
         if index is None:
             advice = "Move it to a block of the visemes lane." if lane is not None else "Attach visemes first."
             self.failed.emit("No viseme is said at the playhead.", advice)
@@ -79,20 +82,20 @@ class VisemeActions(QObject):
         self.reading.stop()
 
     def _there(self) -> VisemeLane | None:
-        if self._session.visemes is None:
+        if self._session.document.visemes is None:
             self.failed.emit("There are no visemes.", "Attach a TextGrid or mouth cues: File, Attach visemes.")
-        return self._session.visemes
+        return self._session.document.visemes
 
     def _arrived(self, request: tuple[Path, Take], read: tuple[VisemeLane, list[str]]) -> None:
         path, recorded = request
         lane, notices = read
-        if recorded is self._session.recorded:
+        if recorded is self._session.document.recorded:
             self._push(lane, f"attach {path.name}")
             if notices:
                 self.failed.emit(" ".join(notices), "")
 
     def _push(self, lane: VisemeLane | None, title: str) -> None:
-        self._session.undo.push(VisemesCommand(self._session, lane, title))
+        self._session.document.undo.push(VisemesCommand.of(self._session.document, lane, title))
 
 
 def _read(request: tuple[Path, Take]) -> tuple[VisemeLane, list[str]]:

@@ -14,7 +14,7 @@ import numpy as np
 from app.playback.clock import Pull
 from app.playback.device import LATENCY_S
 from app.preview.worker import Wanted
-from engine.lab.speed import Speed, performance_of
+from engine.lab.speed.timing import Speed, performance_of
 
 PLAYED_S = 30.0
 RATE, BLOCK = 48_000, 512
@@ -91,8 +91,10 @@ def playback_job(seconds: float = PLAYED_S) -> list[Speed]:
             return sinks[-1]
 
         window.media._open_sink = opened
-        samples = np.random.default_rng(0).uniform(-0.5, 0.5, (round(window.session.take.duration_s * RATE), 2))
-        window.session.attach_audio(Audio(samples.astype(np.float32), RATE))
+        samples = np.random.default_rng(0).uniform(
+            -0.5, 0.5, (round(window.session.document.take.duration_s * RATE), 2)
+        )
+        window.session.document.attach_audio(Audio(samples.astype(np.float32), RATE))
         ratio = window.preview.face.devicePixelRatioF()
         window.preview.face.setFixedSize(round(SIZE / ratio), round(SIZE / ratio))
         shown: list[bytes] = [b""]  # each face once, however often it is drawn

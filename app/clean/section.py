@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from PySide6.QtWidgets import QCheckBox, QPushButton, QSpinBox
 
 from app.session import Change, Session
-from app.session.inference import Inference
+from app.session.edits import Editing
 from app.widgets.section import Section, quiet, slider
-
-if TYPE_CHECKING:
-    from engine.editing import Dragger, Patch
-    from engine.take import Take
+from engine.editing import CleanRequest
 
 FULL = 100
 
@@ -29,12 +24,9 @@ class CleanSection(Section):
 
     tools = frozenset({"clean"})
 
-    def __init__(self, session: Session, inference: Inference) -> None:
+    def __init__(self, session: Session, inference: Editing) -> None:
         super().__init__(session, "Clean")
         self._inference = inference
-        self._estimate: tuple[object, Take, float] | None = (
-            None  # for which take and frames, cleaned fully, and its lag
-        )
         self.strength = QSpinBox(minimum=0, maximum=FULL, suffix=" %")
         self.strength.setValue(80)
         self._slider = slider(0, FULL)
@@ -50,8 +42,8 @@ class CleanSection(Section):
         self.side_by_side(self.preview_button, self.keep_button, self.drop_button)
         self.removed = QCheckBox("Show what is removed")
         self.removed.setToolTip("Draw it under each curve, on a scale of its own (Shift+R)")
-        self.removed.setChecked(session.shows_removed)
-        self.removed.toggled.connect(lambda on: session.show_removed(shown=on))
+        self.removed.setChecked(session.view.shows_removed)
+        self.removed.toggled.connect(lambda on: session.view.show_removed(shown=on))
         self.column.addWidget(self.removed)
         self._facts = quiet("The selection, or the whole take where nothing is selected.")
         self.column.addWidget(self._facts)
@@ -65,29 +57,14 @@ class CleanSection(Section):
 
     def preview(self) -> None:
         """Show what cleaning does."""
-        frames = self.session.selection or (0, len(self.session.take))
-        strength = self.strength.value() / FULL
-
-        def verb(dragger: Dragger) -> Patch:
-            from engine.clean.takes import clean
-            from engine.editing import Patch
-
-            wanted = (dragger.take, frames)
-            if self._estimate is None or self._estimate[0] != wanted:
-                cleaned = clean(dragger.take, frames=frames)
-                self._estimate = (wanted, cleaned.take, cleaned.lag_ms)
-            rows = slice(*frames)
-            raw, full = dragger.take.weights[rows], self._estimate[1].weights[rows]
-            mixed = dragger.take.with_rows(frames[0], raw + strength * (full - raw))
-            return Patch.between(dragger.take, mixed, frames)
-
-        self._inference.run(verb)
+        frames = self.session.view.selection or (0, len(self.session.document.take))
+        self._inference.run(CleanRequest(frames, self.strength.value() / FULL))
 
     def keep(self) -> None:
         """Clean, as one undo step."""
         self.preview()
         strength = self.strength.value()
-        self._inference.finish(f"clean at {strength} %", kind="clean", inputs={"strength": strength / FULL})
+        self._inference.finish(f"clean at {strength} %", kind="clean")
 
     def _previewed(self, _: int) -> None:
         if self._inference.busy:
@@ -95,14 +72,14 @@ class CleanSection(Section):
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TOOL:
-            self.removed.setChecked(self.session.shows_removed)
-        if change & Change.DRAFT and self.session.tool == "clean":
-            draft = self.session.draft
-            if draft is None or self._estimate is None:
+            self.removed.setChecked(self.session.view.shows_removed)
+        if change & Change.DRAFT and self.session.view.tool == "clean":
+            draft = self.session.document.draft
+            if draft is None or draft.lag_ms is None:
                 self._facts.setText("The selection, or the whole take where nothing is selected.")
                 return
-            removed = np.abs(draft.weights - self.session.take.weights[draft.start : draft.stop])
-            lag = self._estimate[2]
+            removed = np.abs(draft.weights - self.session.document.take.weights[draft.start : draft.stop])
+            lag = draft.lag_ms
             lines = [f"takes off {removed.mean():.4f} on average, {removed.max():.2f} at most"]
             lines += [f"lag {lag:.0f} ms at full strength"] if np.isfinite(lag) else []
             self._facts.setText("\n".join(lines))

@@ -7,7 +7,7 @@ from typing import Annotated, cast
 
 import typer
 
-from app.cli import blind, character, clean, fill, flags, review, smooth, spacetime, tables, takes, training
+from app.cli import blind, character, clean, fill, flags, render, review, smooth, spacetime, tables, takes, training
 from app.cli.checks import check_all
 from app.cli.outputs import protect_inputs
 from app.printing import remark, say
@@ -15,7 +15,7 @@ from app.settings import log_path, start_log
 from engine.errors import EngineError
 
 UsageError = cast("type[typer.BadParameter]", typer.BadParameter.__mro__[1])  # of whichever click typer brings
-FAMILIES = (takes, flags, review, fill, smooth, spacetime, clean, character, tables, blind, training)
+FAMILIES = (takes, render, flags, review, fill, smooth, spacetime, clean, character, tables, blind, training)
 
 
 def build() -> typer.Typer:

@@ -21,9 +21,9 @@ def make(
 ) -> None:
     """Write the movies, an empty answer table beside them, and the key elsewhere."""
     from app.preview import movie
-    from engine.formats.atomic import write_bytes
-    from engine.lab.evaluate.blind import exhibits, key_of
-    from engine.lab.evaluate.inpaint import pieces_to_measure
+    from engine.formats.base.atomic import write_bytes
+    from engine.lab.corpus import pieces_to_measure
+    from engine.lab.evaluate.inpaint.blind import exhibits, key_of
 
     sheet = exhibits(pieces_to_measure(data), seed=seed, count=count)
     out.mkdir(parents=True, exist_ok=True)
@@ -39,7 +39,7 @@ def score(
     key: Annotated[Path, typer.Option(help="The key of the sheet.", show_default=False)],
 ) -> None:
     """Say how often recorded and filled motion was taken for recorded (BSS20: 0.54 and 0.51)."""
-    from engine.lab.evaluate.blind import score as scored
+    from engine.lab.evaluate.inpaint.blind import score as scored
 
     for name, value in scored(answers, key).items():
         say(f"{name}: {value:g}")

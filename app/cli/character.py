@@ -138,41 +138,21 @@ def drive(
     sides: ReadSides = AUTOMATIC,
 ) -> None:
     """Move a head that needs no shapes by points on its face; the head turns and goes as the markers do."""
-    import numpy as np
-
+    from engine import editing
     from engine.formats.characters.animation import require_ending, write
-    from engine.formats.characters.moving import MovingMesh
-    from engine.manifold.drive import MeshDriver, aim
 
     require_ending(out)
     head = _head(mesh, unit=unit, up=up, facing=facing)
     performance = performance_of(
-        markers,
-        neutral=neutral,
-        unit=None,
-        fps=fps,
-        sides=sides,
-        changes=pairs(marker or []),
-        placed=points is not None,
+        markers, neutral=neutral, fps=fps, sides=sides, marker=marker, placed=points is not None
     )
     performance.show()
-    source = performance.source
     followed = _followed(head, performance, points)
-    shared = [name for name in followed if name in source.names]
-    if len(shared) < 4:
-        raise EditError(f"Only {len(shared)} of the mesh's points have a marker of their name.", "Name them alike.")
-    columns = [source.names.index(name) for name in shared]
-    rest = head.neutral.astype(np.float64)
-    driver = MeshDriver(rest, head.triangles, np.array([followed[name] for name in shared]))
-    aimed, laid = aim(rest[driver.points], source.neutral[columns], source.displacements[:, columns])
-    if source.head is not None and not still:
-        motion = source.head.seen_along(laid.turn[0], scale=float(laid.scale[0]), shift=laid.shift[0])
-        aimed = motion.apply(aimed)
-    posed = (head.as_in_file(frame.astype(np.float32)) for frame in driver.frames(aimed))
-    moving = MovingMesh(head.as_in_file(rest), head.triangles_in_file, np.stack(list(posed)), source.take.fps)
+    moving = editing.drive(performance.performance, editing.DriveRequest(head, followed, still=still))
     write(moving, out)
-    moved = f"{counted(len(moving.rest), 'vertex', 'vertices')} by {counted(len(shared), 'point')}"
-    say(f"Moved {moved} over {counted(len(aimed), 'frame')}. Written to {out}.")
+    shared = sum(name in performance.performance.source.names for name in followed)
+    moved = f"{counted(len(moving.rest), 'vertex', 'vertices')} by {counted(shared, 'point')}"
+    say(f"Moved {moved} over {counted(len(moving.frames), 'frame')}. Written to {out}.")
 
 
 def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None) -> Character:
@@ -185,13 +165,12 @@ def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None)
 
 def _followed(head: Character, performance: Carried, points: Path | None) -> dict[str, int]:
     """Return which vertex of a head follows which marker, by a file or by what the markers were taken for."""
-    from engine.formats import markers_layout
-    from engine.spacetime.layout import standard
+    from engine import editing
+    from engine.formats.markers import layout as markers_layout
 
     if points is not None:
         return markers_layout.read(points, head=head)
-    layout = performance.layout(head) or standard(head)
-    return dict(zip(layout.names, (int(vertex) for vertex in layout.vertices), strict=True))
+    return performance.places(head) or editing.standard_places(head)
 
 
 def register(app: typer.Typer) -> None:

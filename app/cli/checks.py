@@ -28,6 +28,8 @@ OUTPUTS: dict[tuple[str, str], tuple[str, ...]] = {
     ("make", "out"): FOLDER,
     ("make", "key"): ANY,
     ("train", "out"): FOLDER,
+    ("review", "findings"): (".csv", ".json"),
+    ("review", "for_editors"): (".edl", ".csv"),
     ("review", "out"): FOLDER,  # or a report, which the command itself checks first
 }
 

@@ -40,11 +40,11 @@ def clean(
     write_sides: WrittenSides = SAME,
 ) -> None:
     """Remove the tracker's noise from a take; frames outside the range stay bit-identical."""
-    from engine.clean.takes import clean as clean_take
-    from engine.editing import parse_frames
+    from engine import editing
 
     recorded = open_take(take, fps, sides)
-    cleaned = clean_take(recorded, strength=strength, frames=parse_frames(frames, recorded) if frames else None)
+    chosen = editing.parse_frames(frames, recorded) if frames else (0, len(recorded))
+    cleaned = editing.cleaned(recorded, editing.CleanRequest(chosen, strength))
     save_take(cleaned.take, out, write_sides)
     start, stop = cleaned.touched
     removed = float(abs(cleaned.removed).max())

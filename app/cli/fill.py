@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
@@ -13,40 +14,42 @@ from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_
 from app.printing import remark, say
 from engine.errors import EditError, FormatError
 from engine.formats import format_of, read_take
-from engine.formats.textfile import read_text
+from engine.formats.base.textfile import read_text
 from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.pose import Pose
-    from engine.take import Array
+    from engine.take import Array, Take
+
+TakeFile = Annotated[
+    Path, typer.Argument(help="A take: a Live Link Face CSV, folder or zip, or a project.", show_default=False)
+]
+Spans = Annotated[
+    list[str] | None, typer.Option(help="First frame and the one after the last, such as 40:60; may be repeated.")
+]
+Pins = Annotated[
+    list[str] | None,
+    typer.Option(help="A pose to go through: 50:jawOpen=.6,mouthFunnel=.2, or 50:OTHER.csv@FRAME; may be repeated."),
+]
+Visemes = Annotated[Path | None, typer.Option(help="What is said when: a TextGrid, or Rhubarb's TSV, XML or JSON.")]
+Curves = Annotated[
+    list[str] | None,
+    typer.Option(help="An asked curve in mm: lips_vertical=3, =40:3,60:12 by frame, or a file of numbers."),
+]
 
 
 def fill(
-    take: Annotated[
-        Path, typer.Argument(help="A take: a Live Link Face CSV, folder or zip, or a project.", show_default=False)
-    ],
+    take: TakeFile,
     out: Annotated[Path, typer.Option("-o", "--out", help="The file to write.", show_default=False)],
-    frames: Annotated[
-        list[str] | None, typer.Option(help="First frame and the one after the last, such as 40:60; may be repeated.")
-    ] = None,
+    frames: Spans = None,
     lost: Annotated[bool, typer.Option("--lost", help="Fill every lost run instead.")] = False,
     region: Annotated[str, typer.Option(help="face, lower, upper, eyes, left or right.")] = "face",
-    pin: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="A pose to go through: 50:jawOpen=.6,mouthFunnel=.2, or 50:OTHER.csv@FRAME; may be repeated."
-        ),
-    ] = None,
+    pin: Pins = None,
     guide: Annotated[Path | None, typer.Option(help="A take of the same rate to follow roughly.")] = None,
     guide_offset: Annotated[int, typer.Option(help="Guide frame minus take frame.")] = 0,
-    visemes: Annotated[
-        Path | None, typer.Option(help="What is said when: a TextGrid, or Rhubarb's TSV, XML or JSON.")
-    ] = None,
+    visemes: Visemes = None,
     visemes_offset: Annotated[float, typer.Option(help="Second of the take at which that file begins.")] = 0.0,
-    control: Annotated[
-        list[str] | None,
-        typer.Option(help="An asked curve in mm: lips_vertical=3, =40:3,60:12 by frame, or a file of numbers."),
-    ] = None,
+    control: Curves = None,
     style: Annotated[str, typer.Option(help="auto, bridge (a smooth curve) or perform.")] = "auto",
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Which of the many possible motions.")] = 0,
     variants: Annotated[int, typer.Option(min=1, max=100, help="How many; each is written to a file of its own.")] = 1,
@@ -55,35 +58,44 @@ def fill(
     write_sides: WrittenSides = SAME,
 ) -> None:
     """Fill a span with believable motion, steered by as much or as little as is given."""
-    from engine.editing import parse_frames
+    from engine import editing
     from engine.formats.cues import read_cues
-    from engine.inpaint.fill import fill_spans, lost_spans
-    from engine.inpaint.request import Request, Style, merged_pins
     from engine.speech.visemes import begun_at
 
     format_of(out)  # better refused now than after the work
     if bool(frames) == lost:
         raise EditError("Say what to fill.", "Give --frames A:B, or --lost for every lost run.")
     opened = open_take(take, fps, sides)
-    spans = lost_spans(opened) if lost else [parse_frames(text, opened) for text in frames or []]
-    if not spans:
-        raise EditError(f"{opened.name} has no lost frames.", "Give --frames A:B to fill something else.")
-    request = Request(
+    spans = _spans(opened, frames or [], lost=lost)
+    steering = editing.FillRequest(
         frames=spans[0],
         region=region,
-        pins=merged_pins([_pin(text) for text in pin or []]),
+        pins=editing.merged_pins([_pin(text) for text in pin or []]),
         guide=read_take(guide) if guide else None,
         guide_offset=guide_offset,
         visemes=begun_at(read_cues(visemes, remark), visemes_offset) if visemes else (),
         controls=_controls(control or [], spans),
-        style=cast(Style, style),  # checked with the rest
+        style=cast(editing.Style, style),  # checked with the rest
         lost=lost,
     )
-    filled = [fill_spans(opened, spans, request, seed=seed + index) for index in range(variants)]
-    for index, one in enumerate(filled):
+    filled = [
+        editing.fill_spans(opened, editing.SpansRequest(tuple(spans), replace(steering, seed=seed + index)))
+        for index in range(variants)
+    ]
+    for index, patch in enumerate(filled):
         path = out if variants == 1 else out.with_stem(f"{out.stem}_{index + 1}")
-        save_take(one, path, write_sides)
+        save_take(patch.apply(opened), path, write_sides)
         say(f"filled {_said(spans)} with seed {seed + index}; all other frames are as they were; wrote {path}")
+
+
+def _spans(take: Take, frames: list[str], *, lost: bool) -> list[tuple[int, int]]:
+    """Return what is to be filled: the named frames, or every lost run; raises `EditError` where that is nothing."""
+    from engine.editing import lost_spans, parse_frames
+
+    spans = list(lost_spans(take)) if lost else [parse_frames(text, take) for text in frames]
+    if not spans:
+        raise EditError(f"{take.name} has no lost frames.", "Give --frames A:B to fill something else.")
+    return spans
 
 
 def _said(spans: list[tuple[int, int]]) -> str:

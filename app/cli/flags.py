@@ -16,7 +16,7 @@ from engine.take import timecode
 from engine.words import counted
 
 if TYPE_CHECKING:
-    from engine.formats.reading import Reading
+    from engine.formats.base.reading import Reading
     from engine.quality import Seen, Sound
     from engine.speech.lane import VisemeLane
     from engine.take import Take
@@ -42,8 +42,8 @@ def flags(
     sides: ReadSides = AUTOMATIC,
 ) -> None:
     """List frames to look at: what the tracker spoilt, faces that no face makes, edits that show, lips off the sound."""
-    from engine.formats.atomic import write_bytes
-    from engine.formats.reading import Reading
+    from engine.formats.base.atomic import write_bytes
+    from engine.formats.base.reading import Reading
     from engine.quality import flags_of
 
     reading = Reading(fps, sides_of(sides))

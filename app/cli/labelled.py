@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,32 +11,32 @@ from engine.words import counted
 if TYPE_CHECKING:
     from app.cli.performance import Carried
     from engine.character import Character
+    from engine.editing import Performance
     from engine.formats.labels import LabelFile
-    from engine.spacetime.source import Source
-    from engine.take import Array, Take
+    from engine.take import Take
 
 LABEL_HELP = "For manifold: frames and how the target stands there, in JSON or CSV."
 SUGGEST_HELP = "For manifold: print this many frames worth labelling next, and write nothing."
 
 
-def suggest(performance: Source, count: int, labels: Path | None) -> list[int]:
+def suggest(performance: Performance, count: int, labels: Path | None) -> list[int]:
     """Return frames worth labelling, best first, beside those of a label file; raises `EngineError`."""
-    from engine.manifold.retarget import suggest_frames
+    from engine.editing import suggest_frames
 
     if count < 1:
         raise EditError("Ask for one suggested frame or more.")
     known = list(_read(labels).labels) if labels is not None else []
-    if known and max(known) >= len(performance):
-        raise EditError(f"Frame {max(known)} has a label; the source has {counted(len(performance), 'frame')}.")
-    return suggest_frames(_features(performance), count, labelled=known)
+    if known and max(known) >= len(performance.take):
+        frames = counted(len(performance.take), "frame")
+        raise EditError(f"Frame {max(known)} has a label; the source has {frames}.")
+    return suggest_frames(performance, count, known)
 
 
 def retarget(performance: Carried, character: Path | None, labels: Path | None) -> tuple[Take, Character]:
     """Return the take that the labels make of a performance, and the head it is for; raises `EngineError`."""
-    from engine.character import bundled, without_lacking
+    from engine.character import bundled
+    from engine.editing import LabelRequest, RetargetRequest, retarget_from_labels
     from engine.formats.characters.opening import character_of
-    from engine.manifold.retarget import retarget_weights
-    from engine.spacetime.retarget import retarget as carry
 
     if labels is None:
         raise EditError("There are no labelled frames.", "Name a file of them with --labels; --suggest says which.")
@@ -49,22 +48,11 @@ def retarget(performance: Carried, character: Path | None, labels: Path | None) 
             f"{labels.name} is for the head {name!r}, which does not lie beside it.", "Name the head with --character."
         )
     target = bundled() if path is None else character_of(path)
-    source = performance.source
-    guess = carry(source, target, layout=performance.layout(target)) if source.is_capture else source.take
-    poses: dict[int, Mapping[str, float] | Array] = dict(asked.labels)
-    return without_lacking(retarget_weights(guess, poses, source=_features(source)), target), target
+    request = LabelRequest(asked.labels, RetargetRequest(target, performance.places(target)))
+    return retarget_from_labels(performance.performance, request).take, target
 
 
 def _read(path: Path) -> LabelFile:
     from engine.formats import labels
 
     return labels.read(path)
-
-
-def _features(performance: Source) -> Array:
-    """Return what tells frames apart, (frames, D): the weights of a take, or where a capture's markers are."""
-    from engine.spacetime.source import bridge
-
-    if performance.is_capture:
-        return bridge(performance.displacements)[0].reshape(len(performance), -1)
-    return performance.take.weights

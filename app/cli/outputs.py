@@ -10,10 +10,10 @@ from typing import Annotated, Any
 
 import typer
 
-from engine.formats import inputs
-from engine.formats.atomic import writable
+from engine.formats.base import inputs
+from engine.formats.base.atomic import writable
 
-OUTPUTS = frozenset({"out", "record", "key"})  # what commands call the files that they write
+OUTPUTS = frozenset({"out", "record", "key", "findings", "for_editors"})  # what commands call the files that they write
 GOES_ON = frozenset({"train"})  # from what it wrote before
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Let the result take the place of a file that is read.")]
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.reading import open_take
 from engine.errors import EditError
-from engine.formats.content import require_file, unread
-from engine.formats.livelink_plain import HEADER_BYTES, form_of
+from engine.formats.base.content import require_file, unread
+from engine.formats.livelink.plain import HEADER_BYTES, form_of
 from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.character import Character
+    from engine.editing import Performance
     from engine.formats.characters.marker_table import MarkerTable
-    from engine.spacetime.layout import Layout
-    from engine.spacetime.source import Source
 
 MARKER_HELP = "For markers: correct what one was taken for, its name=a landmark; name= leaves it out."
 
@@ -27,21 +27,21 @@ class Carried:
 
     Attributes
     ----------
-    source : as marker motion
+    performance : a take on the bundled head, or a capture
     table : what each marker of a capture was taken for; none for a take
     """
 
-    source: Source
+    performance: Performance
     table: MarkerTable | None = None
 
-    def layout(self, head: Character) -> Layout | None:
+    def places(self, head: Character) -> dict[str, int]:
         """Return which vertex of a head carries which marker; none for a take, whose markers are the standard ones."""
         from engine.formats.characters.marker_places import places_on
-        from engine.spacetime.layout import named
 
         if self.table is None:
-            return None
-        return named(places_on(head, self.source.neutral, self.source.names, self.table))
+            return {}
+        source = self.performance.source
+        return places_on(head, source.neutral, source.names, self.table)
 
     def show(self) -> None:
         """Print what each marker was taken for, where that was not told by its name alone."""
@@ -60,10 +60,10 @@ def performance_of(
     path: Path,
     *,
     neutral: int,
-    unit: str | None,
     fps: float | None,
     sides: str,
-    changes: dict[str, str] | None = None,
+    unit: str | None = None,
+    marker: Sequence[str] | None = None,
     placed: bool = False,
 ) -> Carried:
     """Read a take or a capture; raises `EngineError`.
@@ -72,28 +72,31 @@ def performance_of(
     ----------
     path : the file
     neutral : for a capture, a frame in which the face is at rest
-    unit : for a capture, instead of what the file says
     fps : instead of what the file says
     sides : of a take, as `--sides` has it
-    changes : landmarks by marker that were corrected
+    unit : for a capture, instead of what the file says
+    marker : corrections of what markers were taken for, `name=landmark` each
     placed : whether a landmark file says where the markers are: their names need not be understood then
     """
     from engine.character import bundled
+    from engine.editing import Performance, capture_of
     from engine.formats import markers
     from engine.formats.characters.marker_places import match_markers
-    from engine.spacetime.source import from_markers, from_take
 
+    changes = pairs(marker or [])
     if path.suffix.lower() not in markers.ENDINGS or is_take(path):
         if changes:
             raise EditError("A take has no markers to correct.", "Leave out --marker.")
-        return Carried(from_take(open_take(path, fps, sides), bundled()))
+        return Carried(Performance(open_take(path, fps, sides), bundled()))
     capture = markers.read(path, unit=unit, fps=fps)
     if not 0 <= neutral < len(capture):
         raise EditError(f"Frame {neutral} is not within the capture, which has {counted(len(capture), 'frame')}.")
     if placed:
-        return Carried(from_markers(capture, neutral_frame=neutral))
-    table = match_markers(capture.positions[neutral], capture.names).corrected(changes or {})
-    return Carried(from_markers(capture, neutral_frame=neutral, turn=table.turn, landmarks=table.landmarks), table)
+        source = capture_of(capture, neutral_frame=neutral)
+        return Carried(Performance(source.take, bundled(), source))
+    table = match_markers(capture.positions[neutral], capture.names).corrected(changes)
+    source = capture_of(capture, neutral_frame=neutral, turn=table.turn, landmarks=table.landmarks)
+    return Carried(Performance(source.take, bundled(), source), table)
 
 
 def is_take(path: Path) -> bool:
@@ -106,7 +109,7 @@ def is_take(path: Path) -> bool:
         raise unread(path, error) from error
 
 
-def pairs(texts: list[str]) -> dict[str, str]:
+def pairs(texts: Sequence[str]) -> dict[str, str]:
     """Return what `name=value` texts say, by name; raises `EditError` for another text."""
     found = {}
     for text in texts:

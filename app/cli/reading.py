@@ -8,7 +8,7 @@ from typing import Annotated, cast
 import typer
 
 from engine.formats import read_take, write_take
-from engine.formats.reading import Reading, Sides
+from engine.formats.base.reading import Reading, Sides
 from engine.take import Take
 
 Fps = Annotated[

@@ -22,12 +22,11 @@ def smooth(
     write_sides: WrittenSides = SAME,
 ) -> None:
     """Low-pass all weights, shifting nothing in time; the range's ends are feathered."""
-    from engine import retouch
-    from engine.editing import parse_frames
+    from engine import editing
 
     opened = open_take(Path(take), fps, sides)
-    chosen = parse_frames(frames, opened) if frames else (0, len(opened))
-    save_take(retouch.smooth(opened, chosen, cutoff).apply(opened), out, write_sides)
+    chosen = editing.parse_frames(frames, opened) if frames else (0, len(opened))
+    save_take(editing.smooth(opened, editing.SmoothRequest(chosen, cutoff)).apply(opened), out, write_sides)
     say(f"smoothed frames {chosen[0]}:{chosen[1]} at {cutoff:g} Hz; wrote {out}")
 
 

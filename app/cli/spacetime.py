@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli import labelled
-from app.cli.performance import MARKER_HELP, Carried, pairs, performance_of
+from app.cli.performance import MARKER_HELP, Carried, performance_of
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from app.printing import say
 from engine.errors import EditError
@@ -18,7 +18,7 @@ from engine.words import counted
 
 if TYPE_CHECKING:
     from engine.character import Character
-    from engine.spacetime.matching import Matching
+    from engine.editing import Matching
     from engine.take import Take
 
 STRONGEST = 1e12  # beyond this the system cannot be solved
@@ -49,10 +49,7 @@ def pin(
     write_sides: WrittenSides = SAME,
 ) -> None:
     """Pin a pose at a frame and let it spread over a range."""
-    from dataclasses import replace
-
-    from engine.editing import parse_frames
-    from engine.spacetime import pin as pins
+    from engine import editing
     from engine.take import SHAPES
 
     source = open_take(take, fps, sides)
@@ -60,15 +57,14 @@ def pin(
     if controls:
         if free:
             raise EditError("A control pins the whole pose.", "Leave out --free, or pin weights instead.")
-        pose = pins.pose_reaching(source, frame, assignments(controls))
+        pose = editing.pose_reaching(source, frame, assignments(controls))
         named = {**dict(zip(SHAPES, pose.tolist(), strict=True)), **named}
     if not named:
         raise EditError("The pin has no pose.", "Name weights with --weights or controls with --control.")
-    spreading = (
-        pins.Spreading() if closure is None else replace(pins.Spreading(), closure=_strength("closure", closure))
-    )
-    edited = pins.pin(source, {frame: named}, parse_frames(frames, source), whole=not free, spreading=spreading)
-    save_take(edited, out, write_sides)
+    held = None if closure is None else _strength("closure", closure)
+    chosen = editing.parse_frames(frames, source)
+    asked = editing.PinRequest({frame: named}, chosen, whole=not free, closure=held)
+    save_take(editing.pin(source, asked).apply(source), out, write_sides)
     say(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
 
 
@@ -96,25 +92,12 @@ def retarget(
     marker: Annotated[list[str] | None, typer.Option("--marker", help=MARKER_HELP)] = None,
 ) -> None:
     """Carry markers or a take to another character."""
-    from engine.formats import format_of
-
-    if method is not Method.MANIFOLD and (labels is not None or suggest is not None):
-        raise EditError("Labelled frames belong to the other method.", "Add --method manifold.")
-    if out is None and suggest is None:
-        raise EditError("Say where the new take is written.", "Name it with -o.")
-    if out is not None:
-        format_of(out)  # an ending that cannot be written is told before the work, not after it
+    _require_sense(method, labelled=labels is not None or suggest is not None, out=out, suggests=suggest is not None)
     performance = performance_of(
-        source,
-        neutral=neutral,
-        unit=unit,
-        fps=fps,
-        sides=sides,
-        changes=pairs(marker or []),
-        placed=landmarks is not None,
+        source, neutral=neutral, unit=unit, fps=fps, sides=sides, marker=marker, placed=landmarks is not None
     )
     if suggest is not None:
-        say("\n".join(map(str, labelled.suggest(performance.source, suggest, labels))))
+        say("\n".join(map(str, labelled.suggest(performance.performance, suggest, labels))))
         return
     assert out is not None
     performance.show()
@@ -129,8 +112,20 @@ def retarget(
     say(f"Moved {target.name} by {counted(len(made), 'frame')} of {source.name}. Written to {out}.")
 
 
+def _require_sense(method: Method, *, labelled: bool, out: Path | None, suggests: bool) -> None:
+    """Raise `EditError` where the options do not go together: better told before the work than after it."""
+    from engine.formats import format_of
+
+    if method is not Method.MANIFOLD and labelled:
+        raise EditError("Labelled frames belong to the other method.", "Add --method manifold.")
+    if out is None and not suggests:
+        raise EditError("Say where the new take is written.", "Name it with -o.")
+    if out is not None:
+        format_of(out)
+
+
 def _matching(*, alpha: float | None, beta: float | None, closure: float | None, unbounded: bool) -> Matching:
-    from engine.spacetime.matching import Matching
+    from engine.editing import Matching
 
     usual = Matching()
     return Matching(
@@ -144,16 +139,15 @@ def _matching(*, alpha: float | None, beta: float | None, closure: float | None,
 def _carried(
     performance: Carried, character: Path | None, landmarks: Path | None, matching: Matching
 ) -> tuple[Take, Character]:
+    from engine import editing
     from engine.character import bundled
-    from engine.formats import markers_layout
     from engine.formats.characters.opening import character_of
-    from engine.spacetime.layout import named
-    from engine.spacetime.retarget import retarget as carry
+    from engine.formats.markers import layout as markers_layout
 
     target = bundled() if character is None else character_of(character)
-    given = named(markers_layout.read(landmarks, head=target)) if landmarks is not None else None
-    layout = given or performance.layout(target)
-    return carry(performance.source, target, layout=layout, matching=matching), target
+    given = markers_layout.read(landmarks, head=target) if landmarks is not None else None
+    places = performance.places(target) if given is None else given
+    return editing.retarget(performance.performance, editing.RetargetRequest(target, places, matching)).take, target
 
 
 def assignments(text: str) -> dict[str, float]:

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 import typer
 
 from app import printing
+from app.cli.listing import listing
 from engine.errors import EngineError
-from engine.lab import evaluate as tables
 
 
 def show(title: str, rows: Sequence[dict[str, Any]], *, as_json: bool) -> None:
@@ -22,18 +22,21 @@ def show(title: str, rows: Sequence[dict[str, Any]], *, as_json: bool) -> None:
 
 
 def evaluate(
-    name: Annotated[str, typer.Argument(help=f"Which table: {', '.join(tables.TABLES)}.")],
+    name: Annotated[str, typer.Argument(help="Which table.")],
     data: Annotated[Path | None, typer.Option(help="A folder of takes instead of the test split.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     figures: Annotated[Path | None, typer.Option(help="Draw the figures into this folder.")] = None,
 ) -> None:
     """Measure a method against its baselines."""
+    from engine.lab.evaluate.tables import named
+
     if data is not None and not data.is_dir():
         raise EngineError(f"{data} is not a folder.", "Name a folder of takes with --data.")
+    table = named(name)
     if figures is not None:
-        for path in tables.figures(name, data, figures, printing.remark):
+        for path in table.draw(data, figures, printing.remark):
             printing.remark(f"wrote {path}")
-    show(name, tables.table(name, data, printing.remark), as_json=as_json)
+    show(name, table.table(data, printing.remark), as_json=as_json)
 
 
 def bench(as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False) -> None:
@@ -43,7 +46,13 @@ def bench(as_json: Annotated[bool, typer.Option("--json", help="Print one JSON o
     show("bench", measure(printing.remark), as_json=as_json)
 
 
+def _names() -> list[str]:
+    from engine.lab.evaluate.tables import TABLES
+
+    return [table.name for table in TABLES]
+
+
 def register(app: typer.Typer) -> None:
     """Add the commands of this module."""
-    app.command()(evaluate)
+    app.command(cls=listing(_names, "Which table"))(evaluate)
     app.command()(bench)

@@ -1,4 +1,4 @@
-"""`retake info`, `retake edit` and `retake render`: what is done with one take."""
+"""`retake info` and `retake edit`: what is done with one take."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def info(
     from engine.controls import ALL_CONTROLS
     from engine.extended import bundled_face
     from engine.formats import livelink
-    from engine.formats.importing import imported, in_words
-    from engine.formats.reading import Reading
+    from engine.formats.base.reading import Reading
+    from engine.formats.livelink.importing import imported, in_words
 
     opened = open_take(take, fps, sides)
     measured = bundled_face().measure(opened.weights)
@@ -77,7 +77,7 @@ def edit(
 ) -> None:
     """Change one control over a range of frames; the whole face follows."""
     from engine.controls import ALL_CONTROLS, control_index
-    from engine.editing import Change, edit_control, parse_frames
+    from engine.editing import Change, ControlRequest, parse_frames, set_control
     from engine.shortfall import shortfalls
 
     kinds: dict[Change, float | None] = {"set": set_, "add": add, "scale": scale}
@@ -87,7 +87,8 @@ def edit(
     opened = open_take(take, fps, sides)
     column, (start, stop) = control_index(control), parse_frames(frames, opened)
     believability = 0.0 if exact else believability
-    patch = edit_control(opened, control, (start, stop), *given[0], believability=believability).settled(opened)
+    asked = ControlRequest(control, (start, stop), *given[0], believability=believability)
+    patch = set_control(opened, asked).settled(opened)
     save_take(patch.apply(opened), out, write_sides)
     reached = patch.reached[start - patch.start : stop - patch.start, column]
     unit = ALL_CONTROLS[column].unit
@@ -98,40 +99,7 @@ def edit(
     say(f"frames outside {patch.start}:{patch.stop} are as they were; wrote {out}")
 
 
-def render(
-    take: TakeFile,
-    out: Out,
-    frame: Annotated[int | None, typer.Option(help="The frame of a picture; the first without it.")] = None,
-    compare: Annotated[Path | None, typer.Option(help="Another take to draw at its right.")] = None,
-    character: Annotated[Path | None, typer.Option(help="A head to draw it on; the bundled one without.")] = None,
-    size: Annotated[int, typer.Option(help="Height in pixels.", min=64, max=4096)] = 720,
-    codec: Annotated[
-        str | None, typer.Option(help="Of a movie: av1, vp9, mpeg4, or h264 for players that know nothing else.")
-    ] = None,
-    fps: Fps = None,
-    sides: ReadSides = AUTOMATIC,
-) -> None:
-    """Draw a take: a PNG of one frame, or an MP4 of all of it."""
-    from app.preview import movie
-
-    shown = [open_take(path, fps, sides) for path in (take, compare) if path is not None]
-    if frame is not None and not all(0 <= frame < len(each) for each in shown):
-        raise EditError(f"Frame {frame} is not within the take, which has {counted(min(map(len, shown)), 'frame')}.")
-    if character is not None:
-        from engine.formats.characters.opening import character_of
-
-        movie.use(character_of(character))
-    if out.suffix.lower() == ".png":
-        movie.write_picture(shown, frame or 0, out, height=size)
-    elif out.suffix.lower() == ".mp4":
-        movie.write_movie(shown, out, height=size, codec=codec)
-    else:
-        raise EditError(f"{out.name} is neither a picture nor a movie.", "Use a name that ends in .png or .mp4.")
-    say(f"wrote {out}")
-
-
 def register(app: typer.Typer) -> None:
     """Add the commands of this module."""
     app.command()(info)
     app.command()(edit)
-    app.command()(render)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.easing import ease
 from engine.take import Array
 
 
 def falloff(frames: Array, centre: float, radius_frames: float) -> Array:
     """Return how much each frame follows, 1 at the centre and 0 from the radius on, flat at both ends."""
     away = np.clip(np.abs(frames - centre) / max(radius_frames, 1e-9), 0.0, 1.0)
-    return np.asarray(1 - away * away * (3 - 2 * away))
+    return np.asarray(1 - ease(away))
 
 
 def pulled(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QRectF, Qt
@@ -11,10 +13,10 @@ from app.curves import removed
 from app.curves.line import Line
 from app.curves.peaks import Rows, Thinned
 from app.curves.places import GUTTER_PX
-from app.curves.removed import Removed
+from app.curves.removed import Removed, full_scale
 from app.session.curve_table import CURVES, FIRST_WEIGHT
 from app.theme import GRID, Palette
-from engine.take import Array, Mask
+from engine.take import Array, Mask, Take
 
 INDENT_PX = 11
 REMOVED, CROWDED_PX = "removed ", 48
@@ -31,7 +33,8 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         self.colour, self.quiet, self.text_colour = QColor("white"), QColor("grey"), QColor("white")
         self.active, self.value, self.range = False, 0.0, (0.0, 1.0)
         self.spare = 0.0  # the part of the lane's height below its range, for what is removed
-        self.removed, self.removed_colour = "", QColor("white")
+        self.removed = self.removed_short = ""  # where there is room for it, and where there is not
+        self.removed_colour = QColor("white")
 
     def paint(self, painter: QPainter, *_: object) -> None:
         """Draw name and numbers."""
@@ -70,7 +73,7 @@ class Gutter(pg.GraphicsWidget):  # type: ignore[misc]
         if self.removed:
             painter.setPen(self.removed_colour)
             crowded = area.height() < CROWDED_PX and not self._curve.is_weight  # the value stands beside it
-            text = self.removed.removeprefix(REMOVED) if crowded else self.removed
+            text = self.removed_short if crowded else self.removed
             painter.drawText(area, right | Qt.AlignmentFlag.AlignBottom, text)
             painter.setPen(self.quiet)
             area.setHeight(area.height() * (1 - self.spare))
@@ -101,7 +104,10 @@ class Lane:
         for item in (self.original, self.asked, self.reached, self.dot):
             self.view.addItem(item, ignoreBounds=True)
         self.dot.hide()
-        self.removed = Removed(self.view, LEAST_WEIGHT if self.curve.is_weight else LEAST_MM)
+        least = LEAST_WEIGHT if self.curve.is_weight else LEAST_MM
+        self.removed, self.differing = Removed(self.view, least), Removed(self.view, least, differs=True)
+        self._difference: tuple[tuple[Take, Take], Array, float] | None = None  # of which takes; how much, full scale
+        self._removed_colour = QColor("white")
         self.range = self._fitted = (0.0, 1.0)
         self._box = QRectF(GUTTER_PX, 0.0, 1.0, 1.0)
         self._curves: tuple[Thinned, Thinned, Thinned | None] | None = None  # original, reached, asked
@@ -127,11 +133,12 @@ class Lane:
         self.asked.set_pen(pg.mkPen(colours.text, width=line_px, style=Qt.PenStyle.DashLine))
         self.reached.set_pen(pg.mkPen(colour, width=line_px))
         self.removed.paint_with(colours, line_px)
+        self.differing.paint_with(colours, line_px)
         self.dot.setBrush(pg.mkBrush(colour))
         self.dot.setPen(pg.mkPen(colours.text, width=line_px))
         self.gutter.colour, self.gutter.quiet = colour, QColor(colours.quiet)
         self.gutter.text_colour = QColor(colours.text)
-        self.gutter.removed_colour = QColor(colours.warning)
+        self.gutter.removed_colour = self._removed_colour = QColor(colours.warning)
 
     def fit(self) -> None:
         """Choose the range of values so that all curves fit with a margin; weights show 0..1."""
@@ -195,13 +202,49 @@ class Lane:
         self._make_room(removed.SHARE)
         full = self.removed.show(taken_off, start, kept=kept, visible=visible, columns=self._columns)
         unit = "" if self.curve.is_weight else f" {self.curve.unit}"
-        self.gutter.removed = f"{REMOVED}±{full:g}{unit}"
+        self.gutter.removed_short = f"±{full:g}{unit}"
+        self.gutter.removed = f"{REMOVED}{self.gutter.removed_short}"
+        self.gutter.update()
+
+    def difference(self, takes: tuple[Take, Take], measure: Callable[[], Array]) -> Array:
+        """Return how much a curve differs, (frames,), measured once for the same two takes."""
+        known = self._difference[0] if self._difference is not None else (None, None)
+        if self._difference is None or known[0] is not takes[0] or known[1] is not takes[1]:
+            curve = measure()
+            least = LEAST_WEIGHT if self.curve.is_weight else LEAST_MM
+            largest = float(np.abs(curve).max(initial=0.0))  # less than can be read is none
+            self._difference = takes, curve, full_scale(largest, least) if largest >= least / 2 else 0.0
+        return self._difference[1]
+
+    def draw_difference(self, visible: tuple[int, int], frame: int) -> None:
+        """Draw at the foot of the lane how much its curve differs, and tell how much at a frame."""
+        assert self._difference is not None
+        _, curve, full = self._difference
+        if not full:
+            self.hide_removed()
+            return
+        self._make_room(removed.SHARE)
+        self.differing.draw(curve, 0, full=full, visible=visible, columns=self._columns)
+        self.tell_difference(frame)
+
+    def tell_difference(self, frame: int) -> None:
+        """Tell by how much the curve differs at a frame."""
+        _, curve, full = self._difference or (None, np.zeros(0), 0.0)
+        if not full:
+            return
+        unit = "" if self.curve.is_weight else f" {self.curve.unit}"
+        digits = 2 if self.curve.is_weight else 1
+        self.gutter.removed = f"Δ {curve[frame]:+.{digits}f} of ±{full:g}{unit}"
+        self.gutter.removed_short = f"Δ {curve[frame]:+.{digits}f}"
+        self.gutter.removed_colour = self.gutter.quiet
         self.gutter.update()
 
     def hide_removed(self) -> None:
         """Give the foot of the lane back to its curve."""
         self._make_room(0.0)
         self.removed.hide()
+        self.differing.hide()
+        self.gutter.removed_colour = self._removed_colour
         self.gutter.removed = ""
         self.gutter.update()
 

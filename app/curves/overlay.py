@@ -12,6 +12,8 @@ from PySide6.QtWidgets import QGraphicsItem, QStyleOptionGraphicsItem, QWidget
 from app.theme import Palette
 
 Marks = list[tuple[float, float]]  # half-open ranges of frames
+NOTE_LANE = 4  # of the theme's colours
+APART_PX, FEW = 2.0, 100  # lines nearer to each other are one, where there are more than a few
 RING_PX = 4.0  # radius of the corners
 
 
@@ -55,6 +57,7 @@ class Underlay(Overlay):
     def __init__(self, area: Callable[[], QRectF], x_of: Callable[[float], float]) -> None:
         super().__init__(area, x_of, -10)
         self.spans: Marks = []
+        self.notes: Marks = []  # that are open
         self.selection: tuple[float, float] | None = None
         self.brush_reach: tuple[float, float] | None = None
         self.brush_box: Callable[[], QRectF] = QRectF
@@ -70,6 +73,7 @@ class Underlay(Overlay):
             box = QRectF(left, area.top(), right - left, area.height())
             painter.fillRect(box, tint)
             painter.fillRect(box, QBrush(hatch, Qt.BrushStyle.BDiagPattern))
+        self._draw_notes(painter, area, colours)
         chosen = QColor(colours.text)
         chosen.setAlphaF(0.07)
         if self.selection is not None:
@@ -78,6 +82,23 @@ class Underlay(Overlay):
             reach = QColor(colours.accent)
             reach.setAlphaF(0.09)
             painter.fillRect(self._box(self.brush_reach, self.brush_box()), reach)
+
+    def _draw_notes(self, painter: QPainter, area: QRectF, colours: Palette) -> None:
+        """Draw a dotted line through all lanes where each note begins, and tint the frames of one that is on several."""
+        colour, tint = QColor(colours.lanes[NOTE_LANE]), QColor(colours.lanes[NOTE_LANE])
+        tint.setAlphaF(0.07)
+        if not self.notes:
+            return
+        frames = np.array(self.notes)
+        places = self._x_of(0.0) + frames * (self._x_of(1.0) - self._x_of(0.0))
+        seen = (places[:, 1] >= area.left()) & (places[:, 0] <= area.right())
+        for start, stop in frames[seen & (frames[:, 1] - frames[:, 0] > 1)].tolist():
+            painter.fillRect(self._box((start, stop), area), tint)
+        painter.setPen(QPen(colour, 1, Qt.PenStyle.DotLine))
+        begins = places[seen & (places[:, 0] >= area.left()), 0]
+        for left in np.unique(np.floor(begins / APART_PX)) * APART_PX + APART_PX / 2 if len(begins) > FEW else begins:
+            painter.drawLine(QLineF(left, area.top(), left, area.bottom()))
+        painter.setPen(Qt.PenStyle.NoPen)
 
     def _stretches(self, area: QRectF) -> Marks:
         """Return where spans lie on screen, left and right; those that share a pixel are one, or a take that lost its

@@ -9,20 +9,31 @@ import pyqtgraph as pg
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSizeF, Qt, Signal
 from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QMouseEvent, QResizeEvent, QWheelEvent
 
-from app.curves.drawing import draw_edits, draw_removed, show_frames, take_curves
+from app.curves.drawing import (
+    draw_differences,
+    draw_edits,
+    draw_removed,
+    show_frames,
+    take_curves,
+    tell_differences,
+)
 from app.curves.lane import Lane
 from app.curves.overlay import FocusRing, Playhead, Underlay
-from app.curves.places import GUTTER_PX, Growth, boxes
+from app.curves.places import GUTTER_PX, Growth
+from app.curves.stack import LaneStack
 from app.curves.tools import make_tools
 from app.curves.tools.base import Tool
 from app.session import Change, Session
-from app.session.inference import Inference
+from app.session.edits import Editing
 from app.theme import Palette
 from app.widgets.text import Label
 
 WHEEL_STEP = 1.2
 MIN_LANE_PX = 40
 EXPANDER = 0.75  # the part of the gutter whose click shows or hides the weights below
+
+
+ANY_CURVE = Change.TAKE | Change.LANES | Change.VIEW | Change.CURVES | Change.DRAFT
 
 
 class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
@@ -36,7 +47,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
 
     menu_wanted = Signal(str, QPoint)  # curve, lane, or here for all that is at the playhead; where on the screen
 
-    def __init__(self, session: Session, inference: Inference, colours: Palette) -> None:
+    def __init__(self, session: Session, inference: Editing, colours: Palette) -> None:
         super().__init__()
         self.session, self.inference = session, inference
         self.setAntialiasing(True)
@@ -44,12 +55,11 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self.setAccessibleName("Curves")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._colours = colours
-        self.lanes: list[Lane] = []
-        self._made: dict[int, Lane] = {}  # by key; a lane that leaves the screen is kept: Qt may yet paint it once
+        self.stack = LaneStack(self.scene())
         self._growth = Growth()
         self._growth.moved.connect(self._place)
-        self._underlay = Underlay(self._lanes_box, self._x_of)
-        self._playhead = Playhead(self._lanes_box, self._x_of)
+        self._underlay = Underlay(self.stack.box, self._x_of)
+        self._playhead = Playhead(self.stack.box, self._x_of)
         self._ring = FocusRing(self._active_box, self._x_of)
         for item in (self._underlay, self._playhead, self._ring):
             self.scene().addItem(item)
@@ -66,16 +76,21 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
     @property
     def tool(self) -> Tool:
         """The tool that the mouse goes to."""
-        return self.tools[self.session.tool]
+        return self.tools[self.session.view.tool]
 
     @property
     def moving(self) -> bool:
         """Whether lanes are on their way to other places."""
         return self._growth.moving
 
+    @property
+    def lanes(self) -> list[Lane]:
+        """The lanes on screen, from top to bottom."""
+        return self.stack.shown
+
     def lane(self, key: int) -> Lane:
         """Return the lane of a curve on screen, an index into CURVES."""
-        return self._made[key]
+        return self.stack.known[key]
 
     def paint_with(self, colours: Palette) -> None:
         """Take on a theme's colours."""
@@ -89,8 +104,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         )
 
     def _paint_lanes(self) -> None:
-        for lane in self.lanes:
-            lane.paint_with(self._colours, self.devicePixelRatioF())  # pens that do not scale would be hairlines
+        self.stack.paint_with(self._colours, self.devicePixelRatioF())  # pens that do not scale would be hairlines
 
     # --- drawing
 
@@ -107,6 +121,8 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
                 kinds.TAKE | kinds.LANES | kinds.VIEW | kinds.CURVES | kinds.DRAFT | kinds.TOOL,
                 partial(self._draw, draw_removed),
             ),
+            (ANY_CURVE | kinds.TOOL | kinds.REVIEW, partial(self._draw, draw_differences)),
+            (kinds.PLAYHEAD, partial(self._draw, tell_differences)),
             (kinds.TAKE | kinds.LANES | kinds.PLAYHEAD | kinds.CURVES | kinds.DRAFT, self._show_playhead),
             (kinds.LANES | kinds.CURVES | kinds.DRAFT, self.tool.leave),  # what it showed is not there any more
             (kinds.DRAFT, self.tool.refresh),
@@ -122,8 +138,10 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         step(self.lanes, self.session)
 
     def _show_marks(self) -> None:
-        self._underlay.selection = self.session.selection
-        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.open_spans]
+        self._underlay.selection = self.session.view.selection
+        self._underlay.spans = [(float(span.start), float(span.stop)) for span in self.session.document.open_spans]
+        notes = self.session.document.marks.notes
+        self._underlay.notes = [(float(note.frame), float(note.stop)) for note in notes if not note.resolved]
         self._underlay.update()
         self._playhead.update()
 
@@ -141,29 +159,12 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self.setCursor(self.tool.cursor)
 
     def _lay_lanes(self) -> None:
-        wanted = self.session.lanes
-        if [lane.key for lane in self.lanes] == wanted:
-            return
-        for lane in self.lanes:
-            if lane.key not in wanted:
-                lane.put_away()
-        for key in wanted:
-            if key not in self._made:
-                self._made[key] = Lane(key)
-                self.scene().addItem(self._made[key].gutter)
-                self.scene().addItem(self._made[key].view)
-        self.lanes = [self._made[key] for key in wanted]
-        for lane in self.lanes:
-            lane.gutter.show()
-            lane.view.show()
-        self._paint_lanes()
+        if self.stack.show(self.session.view.lanes):
+            self._paint_lanes()
 
     def _place(self) -> None:
         """Put every lane where the panel's size has it."""
-        size = QSizeF(self.size())
-        places = boxes(size, [lane.key for lane in self.lanes], self._growth.shares)
-        for lane, box in zip(self.lanes, places, strict=True):
-            lane.place(box)
+        self.stack.place(QSizeF(self.size()), self._growth.shares)
         for item in (self._underlay, self._playhead, self._ring):
             item.moved()
         self._follow()
@@ -173,21 +174,18 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self.tool.placed()
 
     def _arrange(self) -> None:
-        keys, active = [lane.key for lane in self.lanes], self.session.lane
-        for lane in self.lanes:
-            lane.gutter.active = lane.key == active
-            lane.gutter.expanded = lane.key in self.session.expanded
-            lane.gutter.update()
+        active = self.session.view.lane
+        self.stack.mark(active, self.session.view.expanded)
         self._ring.moved()
-        self._growth.choose(keys, active, at_once=not self.isVisible())
+        self._growth.choose(self.stack.keys, active, at_once=not self.isVisible())
         self.setMinimumHeight(MIN_LANE_PX * len(self.lanes))
 
     def _show_playhead(self) -> None:
-        frame = self.session.playhead
+        frame = self.session.view.playhead
         self._playhead.frame = frame
         self._playhead.update()
         for lane in self.lanes:
-            lane.gutter.value = self.session.value(lane.key, frame)
+            lane.gutter.value = self.session.document.value(lane.key, frame)
             lane.gutter.update()
 
     def show_brush(self, lane: Lane | None, frames: tuple[float, float] | None) -> None:
@@ -221,27 +219,17 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
 
     def _active_box(self) -> QRectF:
         """Return the box of the lane that is worked on, its name included; an empty one without the keyboard."""
-        shown = next((lane for lane in self.lanes if lane.key == self.session.lane), None)
+        shown = next((lane for lane in self.lanes if lane.key == self.session.view.lane), None)
         if shown is None or not self.hasFocus():
             return QRectF()
         return shown.scene_box().adjusted(-GUTTER_PX, 0, 0, 0)
 
-    def _lanes_box(self) -> QRectF:
-        return self.lanes[0].scene_box().united(self.lanes[-1].scene_box())
-
     def _x_of(self, frame: float) -> float:
-        box = self.lanes[0].scene_box()
-        first, last = self.session.view
-        return box.left() + (frame - first) / max(1e-9, last - first) * box.width()
+        return self.stack.x_of(frame, self.session.view.range)
 
     def lane_at(self, at: QPointF) -> int | None:
         """Return the curve whose lane is under a position in the widget, gutter included."""
-        y = self.mapToScene(at.toPoint()).y()
-        for lane in self.lanes:
-            box = lane.scene_box()
-            if box.top() - 3 <= y < box.bottom() + 3:
-                return lane.key
-        return None
+        return self.stack.at(self.mapToScene(at.toPoint()).y())
 
     def frame_at(self, at: QPointF) -> float:
         """Return the fractional frame under a position in the widget."""
@@ -253,12 +241,12 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         """Give the press to the tool; the middle button pans; nothing moves under the pointer until it is let go."""
         self._growth.hold()
         if event.button() == Qt.MouseButton.MiddleButton:
-            self._pan_from = (event.position(), self.session.view)
+            self._pan_from = (event.position(), self.session.view.range)
             return
         lane = self.lane_at(event.position())
         if event.button() != Qt.MouseButton.LeftButton or lane is None:
             return
-        self.session.choose_lane(lane)
+        self.session.view.choose_lane(lane)
         if event.position().x() < GUTTER_PX:
             self._named = lane
         else:
@@ -270,8 +258,8 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
             self._released()  # elsewhere, if there was a press
         if self._pan_from is not None:
             origin, (first, last) = self._pan_from
-            shift = (origin.x() - event.position().x()) / max(1.0, self._lanes_box().width()) * (last - first)
-            self.session.set_view(first + shift, last + shift)
+            shift = (origin.x() - event.position().x()) / max(1.0, self.stack.box().width()) * (last - first)
+            self.session.view.set_range(first + shift, last + shift)
             return
         in_gutter = event.position().x() < GUTTER_PX and not self.tool.busy
         self.setCursor(Qt.CursorShape.PointingHandCursor if in_gutter else self.tool.cursor)
@@ -289,7 +277,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
             self.tool.release(event)
             at = event.position()
             if named is not None and at.x() < GUTTER_PX * EXPANDER and self.lane_at(at) == named:
-                self.session.expand(named)
+                self.session.view.expand(named)
         if not event.buttons():
             self._released()
 
@@ -304,13 +292,13 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
             return
         at, lane = QPointF(event.pos()), self.lane_at(QPointF(event.pos()))
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
-            box = self.lane(self.session.lane).scene_box()
-            place = QPointF(min(max(self._x_of(self.session.playhead), box.left()), box.right()), box.center().y())
+            box = self.lane(self.session.view.lane).scene_box()
+            place = QPointF(min(max(self._x_of(self.session.view.playhead), box.left()), box.right()), box.center().y())
             self.menu_wanted.emit("here", self.mapToGlobal(self.mapFromScene(place)))
         elif lane is not None:
-            self.session.choose_lane(lane)
+            self.session.view.choose_lane(lane)
             if at.x() >= GUTTER_PX:
-                self.session.move_playhead(round(self.frame_at(at)))
+                self.session.view.move_playhead(round(self.frame_at(at)))
             self.menu_wanted.emit("curve" if at.x() >= GUTTER_PX else "lane", event.globalPos())
 
     def leaveEvent(self, event: object) -> None:
@@ -324,11 +312,11 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         if event.buttons() & Qt.MouseButton.LeftButton or event.modifiers() & Qt.KeyboardModifier.AltModifier:
             self.tool.wheel(notches)
         elif event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(turn.x()) > abs(turn.y()):
-            first, last = self.session.view
+            first, last = self.session.view.range
             shift = -notches * 0.1 * (last - first)
-            self.session.set_view(first + shift, last + shift)
+            self.session.view.set_range(first + shift, last + shift)
         elif event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-            self.session.zoom_view(WHEEL_STEP**notches, self.frame_at(event.position()))
+            self.session.view.zoom(WHEEL_STEP**notches, self.frame_at(event.position()))
         else:
             event.ignore()  # for the scroll area around the lanes
             return
@@ -341,7 +329,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         super().resizeEvent(event)
         if event is not None:  # pyqtgraph sends none while it is built
             self._place()
-            for step in (show_frames, draw_edits, draw_removed):
+            for step in (show_frames, draw_edits, draw_removed, draw_differences):
                 self._draw(step)
 
     def focusInEvent(self, event: QFocusEvent) -> None:

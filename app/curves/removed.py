@@ -29,10 +29,11 @@ class Removed:
     ----------
     view : of the lane
     least : of the scale, in the units of its values
+    differs : whether it shows where two takes differ, in a colour that warns of nothing
     """
 
-    def __init__(self, view: pg.ViewBox, least: float) -> None:
-        self._view, self._least = view, least
+    def __init__(self, view: pg.ViewBox, least: float, *, differs: bool = False) -> None:
+        self._view, self._least, self._differs = view, least, differs
         self.area, self.line = pg.PlotCurveItem(), pg.PlotCurveItem()
         for item in (self.line, self.area):
             view.addItem(item, ignoreBounds=True)
@@ -40,7 +41,8 @@ class Removed:
 
     def paint_with(self, colours: Palette, line_px: float) -> None:
         """Take on a theme's colours; lines are `line_px` pixels of the screen wide."""
-        colour, tint = QColor(colours.warning), QColor(colours.warning)
+        name = colours.accent if self._differs else colours.warning
+        colour, tint = QColor(name), QColor(name)
         tint.setAlphaF(TINT)
         self.area.setPen(pg.mkPen(colour, width=line_px))
         self.area.setBrush(pg.mkBrush(tint))
@@ -56,9 +58,14 @@ class Removed:
 
         The scale is that of nearly all frames on which the tracker had a face, `kept`; the few beyond it are cut.
         """
+        full = full_scale(float(np.quantile(np.abs(removed[kept]), SCALED)) if kept.any() else 0.0, self._least)
+        self.draw(removed, start, full=full, visible=visible, columns=columns)
+        return full
+
+    def draw(self, removed: Array, start: int, *, full: float, visible: tuple[int, int], columns: int) -> None:
+        """Draw a curve, (n,) from frame `start`, on the visible frames, with the value of full scale."""
         low, high = self._view.viewRange()[1]
         middle, reach = low + SHARE / 2 * (high - low), SHARE / 2 * 0.8 * (high - low)
-        full = full_scale(float(np.quantile(np.abs(removed[kept]), SCALED)) if kept.any() else 0.0, self._least)
         first, last = max(start, visible[0]), min(start + len(removed), visible[1])
         frames, values = peaks(removed[first - start : max(last, first) - start], first, columns)
         self.line.setData([start, start + len(removed) - 1], [middle, middle])
@@ -66,4 +73,3 @@ class Removed:
         self.area.setFillLevel(middle)
         for item in (self.area, self.line):
             item.setVisible(True)
-        return full

@@ -65,5 +65,5 @@ def in_columns(groups: Mapping[str, Sequence[tuple[str, str]]]) -> str:
 
 
 def _table(name: str, rows: Sequence[tuple[str, str]]) -> str:
-    cells = (f"<tr><td style='padding: 1px 16px 1px 0'>{escape(a)}</td><td>{escape(b)}</td></tr>" for a, b in rows)
+    cells = (f"<tr><td style='padding: 0 16px 0 0'>{escape(a)}</td><td>{escape(b)}</td></tr>" for a, b in rows)
     return f"<p><b>{escape(name)}</b></p><table>{''.join(cells)}</table>"

@@ -14,8 +14,8 @@ from app.theme import GRID
 from app.widgets.text import Label, Name, tip
 from engine.errors import EngineError
 from engine.formats import livelink
-from engine.formats.importing import Imported, in_words
-from engine.formats.reading import AUTOMATIC, SIDES, SIDES_IN_WORDS, ReadAs, Reading
+from engine.formats.base.reading import AUTOMATIC, SIDES, SIDES_IN_WORDS, ReadAs, Reading
+from engine.formats.livelink.importing import Imported, in_words
 from engine.words import NAME_LENGTH, plain
 
 RATES = ("23.976", "24", "25", "29.97", "30", "48", "50", "59.94", "60", "120")
@@ -101,8 +101,8 @@ class ImportLine(QFrame):
     def _show(self) -> None:
         if self._imported is None:
             return
-        take, reading = self._session.take, self._session.reading
-        first = livelink.read_as(self._session.recorded)
+        take, reading = self._session.document.take, self._session.document.reading
+        first = livelink.read_as(self._session.document.recorded)
         self.name.setText(take.name)
         with QSignalBlocker(self.rate), QSignalBlocker(self.sides):
             self.rate.clear()
@@ -138,11 +138,11 @@ class ImportLine(QFrame):
 
     def _type_rate(self) -> None:
         text = self.rate.currentText()
-        if text not in (f"{self._session.take.fps:.5g} fps", self.rate.itemText(0)):
+        if text not in (f"{self._session.document.take.fps:.5g} fps", self.rate.itemText(0)):
             self._ask_rate(text)
 
     def _ask_rate(self, text: str | None) -> None:
-        chosen = self._session.reading.chosen
+        chosen = self._session.document.reading.chosen
         try:
             fps = None if text is None else float(text.lower().removesuffix("fps").strip().replace(",", "."))
             self._read(Reading(fps, chosen.sides))
@@ -154,19 +154,19 @@ class ImportLine(QFrame):
         self.chosen.emit()
 
     def _choose_sides(self, index: int) -> None:
-        self._read(Reading(self._session.reading.chosen.fps, SIDES[index]))
+        self._read(Reading(self._session.document.reading.chosen.fps, SIDES[index]))
         self.chosen.emit()
 
     def _read(self, chosen: Reading) -> None:
         """Read the take as chosen, as one step; nothing where it is read so already."""
-        now, first = self._session.reading, livelink.read_as(self._session.recorded)
+        now, first = self._session.document.reading, livelink.read_as(self._session.document.recorded)
         if chosen == now.chosen:
             return
         swapped = first.swapped if chosen.sides == AUTOMATIC.sides else chosen.sides == "recorded"
         wanted = ReadAs(chosen, chosen.fps or first.fps, swapped)
         words = SIDES_IN_WORDS[chosen.sides]
         title = f"sides {words}" if chosen.sides != now.chosen.sides else f"rate {wanted.fps:.5g} fps"
-        self._session.undo.push(ReadingCommand(self._session, wanted, title))
+        self._session.document.undo.push(ReadingCommand.of(self._session.document, wanted, title))
 
 
 class _Choice(QComboBox):

@@ -44,7 +44,7 @@ class BrushSection(Section):
             entry = self._menu.addAction(CURVES[column].title[0].upper() + CURVES[column].title[1:])
             entry.setCheckable(True)
             entry.setData(column)
-            entry.toggled.connect(lambda on, column=column: self.session.add_lane(column, shown=on))
+            entry.toggled.connect(lambda on, column=column: self.session.view.add_lane(column, shown=on))
         self.column.addWidget(self.more)
         self.radius.valueChanged.connect(self._set_radius)
         self._radius_slider.valueChanged.connect(lambda steps: self._set_radius(steps * STEP_S))
@@ -56,31 +56,31 @@ class BrushSection(Section):
         self._show()
 
     def _set_radius(self, seconds: float) -> None:
-        self.session.set_brush(radius_s=seconds)
+        self.session.view.set_brush(radius_s=seconds)
 
     def _set_strength(self, percent: int) -> None:
-        self.session.set_brush(strength=percent / 100)
+        self.session.view.set_brush(strength=percent / 100)
 
     def _set_believability(self, percent: int) -> None:
-        self.session.set_brush(believability=percent / 100)
+        self.session.view.set_brush(believability=percent / 100)
 
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.TOOL | Change.LANES):
             self._show()
 
     def _show(self) -> None:
-        radius_s, percent = self.session.radius_s, round(100 * self.session.strength)
+        radius_s, percent = self.session.view.radius_s, round(100 * self.session.view.strength)
         with QSignalBlocker(self.radius):
             self.radius.setValue(radius_s)
         for widget, value in (
             (self._radius_slider, round(radius_s / STEP_S)),
             (self.strength, percent),
             (self._strength_slider, percent),
-            (self.believability, round(100 * self.session.believability)),
-            (self._believability_slider, round(100 * self.session.believability)),
+            (self.believability, round(100 * self.session.view.believability)),
+            (self._believability_slider, round(100 * self.session.view.believability)),
         ):
             with QSignalBlocker(widget):
                 widget.setValue(value)
         for entry in self._menu.actions():
             with QSignalBlocker(entry):
-                entry.setChecked(entry.data() in self.session.added)
+                entry.setChecked(entry.data() in self.session.view.added)

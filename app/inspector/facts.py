@@ -21,6 +21,7 @@ LEGEND = "Curves: grey as recorded, dashed as asked."
 class FactsSection(Section):
     """What is asked and reached, and why not more; how much differs from the original."""
 
+    away = frozenset({"review"})
     again = Signal()
     reach = Signal()
 
@@ -43,7 +44,7 @@ class FactsSection(Section):
         self.reach_button.clicked.connect(self.reach)
         self.column.addWidget(self.reach_button)
         session.changed.connect(self._on_change)
-        session.undo.indexChanged.connect(self._show)
+        session.document.undo.indexChanged.connect(self._show)
         self._show()
 
     def _on_change(self, change: Change) -> None:
@@ -57,43 +58,43 @@ class FactsSection(Section):
         told, held_back = self._told_of(self._step())
         self.told.setText("\n".join(told))
         self.told.setVisible(bool(told))
-        self.reach_button.setVisible(self.session.draft is None and held_back)
+        self.reach_button.setVisible(self.session.document.draft is None and held_back)
 
     def _show(self, *_: int) -> None:
         session, step = self.session, self._step()
-        made = step.edit.inputs["believability"] if step is not None else session.believability
-        self.again_button.setVisible(session.draft is None and made != session.believability)
+        made = step.edit.inputs["believability"] if step is not None else session.view.believability
+        self.again_button.setVisible(session.document.draft is None and made != session.view.believability)
         self._tell()
         self.facts.setText(self._counts())
 
     def _step(self) -> EditCommand | None:
         """Return the last edit, where it asked for a curve."""
-        step = self.session.undo.command(self.session.undo.index() - 1)
+        step = self.session.document.undo.command(self.session.document.undo.index() - 1)
         return step if isinstance(step, EditCommand) and step.asked is not None else None
 
     def _told_of(self, step: EditCommand | None) -> tuple[list[str], bool]:
         """Return what to say of the edit on screen, and whether believability alone keeps it from what was asked."""
-        session, draft = self.session, self.session.draft
+        session, draft = self.session, self.session.document.draft
         if draft is not None:
-            was = session.controls[draft.start : draft.start + len(draft.asked)]
+            was = session.document.controls[draft.start : draft.start + len(draft.asked)]
             told = draft.start, draft.weights, draft.asked, draft.granted, was
-            return _told(*told, believability=session.believability, playhead=session.playhead)
+            return _told(*told, believability=session.view.believability, playhead=session.view.playhead)
         if step is None or step.asked is None:
             return [], False
         start, asked = step.asked
-        now = session.take.weights[start : start + len(asked)]
+        now = session.document.take.weights[start : start + len(asked)]
         believability = step.edit.inputs["believability"]
         return _told(
-            start, now, asked, step.granted, step.before[0], believability=believability, playhead=session.playhead
+            start, now, asked, step.granted, step.before[0], believability=believability, playhead=session.view.playhead
         )
 
     def _counts(self) -> str:
-        session, draft, frames = self.session, self.session.draft, len(self.session.take)
+        session, draft, frames = self.session, self.session.document.draft, len(self.session.document.take)
         if draft is not None:
             return f"moves {draft.stop - draft.start:,} of {counted(frames, 'frame')}"
-        if not session.undo.index():
+        if not session.document.undo.index():
             return "Nothing changed yet. Drag a curve up or down."
-        moved = int((session.take.weights != session.original.weights).any(axis=1).sum())
+        moved = int((session.document.take.weights != session.document.original.weights).any(axis=1).sum())
         if not moved:
             return "Every frame is as recorded."
         return f"{moved:,} of {counted(frames, 'frame')} changed, the rest is as recorded, bit for bit.\n{LEGEND}"

@@ -39,18 +39,18 @@ class MediaSection(Section):
         self._on_change(Change.TAKE)
 
     def _typed_frames(self, kind: str):  # type: ignore[no-untyped-def]
-        return lambda frames: self.moved.emit(kind, frames / self.session.take.fps)
+        return lambda frames: self.moved.emit(kind, frames / self.session.document.take.fps)
 
     def _on_change(self, change: Change) -> None:
         if not change & (Change.TAKE | Change.MEDIA | Change.MARKS):
             return
         for kind, box in self.boxes.items():
-            record = self.session.marks.medium(kind)
+            record = self.session.document.marks.medium(kind)
             box.setVisible(record is not None)
             if record is not None:
-                box.show_medium(name_of(record), self.session.offset_s(kind), self.session.take.fps)
+                box.show_medium(name_of(record), self.session.document.offset_s(kind), self.session.document.take.fps)
                 box.tell(beyond_the_take(self.session) if kind == "audio" else "")
-        self.needed = bool(self.session.marks.media)
+        self.needed = bool(self.session.document.marks.media)
         self.setVisible(self.needed)
 
 

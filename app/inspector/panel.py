@@ -52,4 +52,6 @@ class Inspector(QFrame):
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.TOOL):
             for section in self._sections:
-                section.setVisible(section.needed and (not section.tools or self._session.tool in section.tools))
+                tool = self._session.view.tool
+                wanted = tool not in section.away and (not section.tools or tool in section.tools)
+                section.setVisible(section.needed and wanted)

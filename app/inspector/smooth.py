@@ -43,7 +43,7 @@ class SmoothSection(Section):
             self._show()
 
     def _show(self) -> None:
-        highest = 0.45 * self.session.take.fps
+        highest = 0.45 * self.session.document.take.fps
         with QSignalBlocker(self.cutoff), QSignalBlocker(self._slider):
             self.cutoff.setRange(0.5, highest)
             self._slider.setRange(5, int(10 * highest))

@@ -42,7 +42,9 @@ class ValueSection(Section):
         self._show()
 
     def _typed(self) -> None:
-        shown = round(self.session.value(self.session.lane, self.session.playhead), self.value.decimals())
+        shown = round(
+            self.session.document.value(self.session.view.lane, self.session.view.playhead), self.value.decimals()
+        )
         if abs(self.value.value() - shown) > 0.4 * 10.0 ** -self.value.decimals():
             self.typed.emit(self.value.value())
 
@@ -51,13 +53,13 @@ class ValueSection(Section):
             self._show()
 
     def _show(self) -> None:
-        session, curve = self.session, CURVES[self.session.lane]
+        session, curve = self.session, CURVES[self.session.view.lane]
         self.title.setText(curve.title if curve.is_weight else curve.title[0].upper() + curve.title[1:])
-        self.close_button.setVisible(closes(session.lane))
+        self.close_button.setVisible(closes(session.view.lane))
         self.value.setDecimals(2 if curve.is_weight else 1)
         self.value.setMinimum(max(-200.0, curve.lowest))
         self.value.setSingleStep(0.05 if curve.is_weight else 0.5)
         self.value.setSuffix("" if curve.is_weight else f" {curve.unit}")
         if not self.value.hasFocus():
             with QSignalBlocker(self.value):
-                self.value.setValue(session.value(session.lane, session.playhead))
+                self.value.setValue(session.document.value(session.view.lane, session.view.playhead))

@@ -11,6 +11,7 @@ import numpy as np
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox
 
+from app.live.recording import Recording
 from app.session import Change, Session
 from app.widgets.section import Section, quiet, slider
 from engine.errors import EngineError
@@ -18,9 +19,6 @@ from engine.words import NAME_LENGTH, counted, plain
 
 if TYPE_CHECKING:
     from engine.live.listen import Listener
-    from engine.live.record import Recorder
-    from engine.live.spool import Spool
-    from engine.take import Take
 
 STATUS_MS = 400
 SWITCH_S = 1e-4  # for which a thread may keep another waiting; Python's own 5 ms would be felt in each packet
@@ -46,14 +44,11 @@ class LiveSection(Section):
 
     def __init__(self, session: Session, folder: Path) -> None:
         super().__init__(session, "Live")
-        self._folder = folder
-        self._spool: Spool | None = None
-        self._waiting: Take | None = None  # a recording that is not open yet
-        self._unsafe: tuple[Take, Spool | None] | None = None  # one that no other file holds yet
-        self._told = ""  # once is enough, until it works again
+        self.recording = Recording(folder)
+        self.recording.recorded.connect(self.recorded)
+        self.recording.failed.connect(self.failed)
         session.changed.connect(self._on_change)
         self._listener: Listener | None = None
-        self._recorder: Recorder | None = None
         self._shown_ms: deque[float] = deque(maxlen=SHOWN)
         self._timer = QTimer(self, interval=STATUS_MS)
         self._timer.timeout.connect(self._show_status)
@@ -117,7 +112,7 @@ class LiveSection(Section):
 
     def stop(self) -> None:
         """Stop listening; a recording under way is opened."""
-        if self._recorder is not None:
+        if self.recording.running:
             self.toggle_recording()
         self._timer.stop()
         if self._listener is not None:
@@ -129,78 +124,23 @@ class LiveSection(Section):
 
     def shut_down(self) -> None:
         """Stop for good; a recording under way stays on disk and is offered at the next start."""
-        if self._recorder is not None:
-            self._save(all_rows=True)
-            self._recorder = None
+        self.recording.shut_down()
         self.stop()
-        self._close_spool(remove=False)
-        if self._unsafe is not None and self._unsafe[1] is not None:
-            self._unsafe[1].close(remove=False)
 
     def toggle_recording(self) -> None:
         """Begin to record, or end and open what was recorded."""
         if self._listener is None:
             return
-        if self._recorder is None:
-            from engine.live.record import Recorder
-
-            self._recorder = Recorder()
-            self._begin_spool(self._recorder)
-            self._listener.stream.on_arrival = self._recorder.add
-        else:
-            recorder, self._recorder = self._recorder, None
+        if self.recording.running:
             self._listener.stream.on_arrival = None
-            self._end(recorder)
+            self.recording.end()
+        else:
+            self._listener.stream.on_arrival = self.recording.begin().add
         self._show_buttons()
 
-    def _begin_spool(self, recorder: Recorder) -> None:
-        from engine.live.spool import Spool
-
-        try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            self._spool = Spool(recorder, self._folder / "live.csv")
-        except (EngineError, OSError) as error:  # it goes on in memory
-            self.failed.emit(f"A crash would lose this recording: {error}", "")
-
-    def _end(self, recorder: Recorder) -> None:
-        try:
-            take = recorder.take("live")
-        except EngineError as error:
-            self.failed.emit(error.sentence, error.advice)
-            self._close_spool(remove=True)
-            return
-        self._save(all_rows=True)
-        self._waiting, self._unsafe, self._spool = take, (take, self._spool), None
-        self.recorded.emit(take)
-        if self._waiting is not None:
-            self.failed.emit("The recording waits until your edits are safe.", "Else it is offered at the next start.")
-
-    def settle(self, original: Take) -> None:
-        """Remove the growing file of a recording that another file holds by now: the one with this take."""
-        if self._unsafe is not None and self._unsafe[0] is original:
-            spool, self._unsafe = self._unsafe[1], None
-            if spool is not None:
-                spool.close(remove=True)
-
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE and self.session.take is self._waiting:
-            self._waiting = None
-
-    def _close_spool(self, *, remove: bool) -> None:
-        if self._spool is not None:
-            self._spool.close(remove=remove)
-            self._spool = None
-
-    def _save(self, *, all_rows: bool = False) -> None:
-        if self._spool is None:
-            return
-        try:
-            self._spool.save(all_rows=all_rows)
-            self._told = ""
-        except EngineError as error:
-            if error.sentence != self._told:
-                self._told = error.sentence
-                self.failed.emit(error.sentence, f"The recording goes on in memory. {error.advice}")
+        if change & Change.TAKE:
+            self.recording.opened(self.session.document.take)
 
     def on_screen(self, spent_ms: float) -> None:
         """Take note of how long a packet took until its picture was shown."""
@@ -214,7 +154,7 @@ class LiveSection(Section):
     def _show_status(self) -> None:
         if self._listener is None:
             return
-        self._save()
+        self.recording.save()
         status = self._listener.status()
         if [self.subjects.itemText(index) for index in range(self.subjects.count())] != list(status.subjects):
             self.subjects.clear()
@@ -229,13 +169,13 @@ class LiveSection(Section):
         if self._shown_ms:
             lines.append(f"on screen {np.percentile(self._shown_ms, 95):.0f} ms after arrival")
         lines += [f"{count:,} {reason}" for reason, count in status.drops.items() if count]
-        if self._recorder is not None:
-            lines.append(f"recording: {counted(len(self._recorder), 'frame')}")
+        if self.recording.running:
+            lines.append(f"recording: {counted(self.recording.frames, 'frame')}")
         self.status.setText("\n".join(lines))
 
     def _show_buttons(self) -> None:
         self.listen_button.setText("Stop" if self.listening else "Listen")
-        self.record_button.setText("End and open" if self._recorder is not None else "Record")
+        self.record_button.setText("End and open" if self.recording.running else "Record")
         self.record_button.setEnabled(self.listening)
         for widget in (self.place, self.port):
             widget.setEnabled(not self.listening)

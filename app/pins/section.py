@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QLineEdit, QPushButton, QSlider
 
 from app.session import Change, Session
-from app.session.inference import Inference
+from app.session.edits import Editing
 from app.widgets.section import CountBox, Section, quiet
 from app.widgets.weight_sliders import WeightSliders
+from engine.editing import PinRequest
 from engine.project import Pin
-
-if TYPE_CHECKING:
-    from engine.editing import Dragger, Patch
-    from engine.spacetime.pin import PinSolver
 
 SPREAD_S = 0.5
 
@@ -33,13 +29,11 @@ class PinsSection(Section):
 
     tools = frozenset({"pin"})
 
-    def __init__(self, session: Session, inference: Inference) -> None:
+    def __init__(self, session: Session, inference: Editing) -> None:
         super().__init__(session, "Pin")
         self._inference = inference
         self._frame = 0
         self._pose: dict[str, float] = {}  # the weights that were moved
-        self._solver: PinSolver | None = None
-        self._solver_for: tuple[object, ...] = ()
         self.hint = quiet("Move a slider: the pose is met at the playhead and eases out over the range.")
         self.column.addWidget(self.hint)
         self.before, self.after = (CountBox("frame", lowest=0, highest=5000) for _ in range(2))
@@ -77,7 +71,7 @@ class PinsSection(Section):
     def range(self) -> tuple[int, int]:
         """The half-open range that the pin spreads over."""
         return max(0, self._frame - self.before.value()), min(
-            len(self.session.take), self._frame + self.after.value() + 1
+            len(self.session.document.take), self._frame + self.after.value() + 1
         )
 
     def keep(self) -> None:
@@ -87,11 +81,13 @@ class PinsSection(Section):
         session, (start, stop) = self.session, self.range
         pin = Pin(self._frame, dict(self._pose), start, stop)
         names = ", ".join(list(self._pose)[:2])
-        others = tuple(other for other in session.marks.pins if other.frame != pin.frame)
+        others = tuple(other for other in session.document.marks.pins if other.frame != pin.frame)
         pins = tuple(sorted((*others, pin), key=lambda each: each.frame))
         inputs = {"frame": self._frame, "weights": dict(self._pose), "range": [start, stop]}
         self._pose = {}
-        self._inference.finish(f"pin {names}", kind="pin", inputs=inputs, marks=replace(session.marks, pins=pins))
+        self._inference.finish(
+            f"pin {names}", kind="pin", inputs=inputs, marks=replace(session.document.marks, pins=pins)
+        )
 
     def drop(self) -> None:
         """Let the pose spring back."""
@@ -102,23 +98,23 @@ class PinsSection(Section):
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
             self._reset_range()
-        if change & (Change.TAKE | Change.PLAYHEAD | Change.CURVES | Change.TOOL) and self.session.tool == "pin":
+        if change & (Change.TAKE | Change.PLAYHEAD | Change.CURVES | Change.TOOL) and self.session.view.tool == "pin":
             if change & (Change.PLAYHEAD | Change.TAKE) and self._pose:
                 self.drop()
-            self._frame = self.session.playhead
+            self._frame = self.session.view.playhead
             self._show_sliders()
 
     def _reset_range(self) -> None:
-        reach = round(SPREAD_S * self.session.take.fps)
+        reach = round(SPREAD_S * self.session.document.take.fps)
         for box in (self.before, self.after):
             with QSignalBlocker(box):
                 box.setValue(reach)
 
     def _show_sliders(self) -> None:
         """Show the shapes that match the search, or else those most active around the playhead."""
-        self._frame = self.session.playhead
-        face, (start, stop) = self.session.take.weights[self._frame], self.range
-        activity = np.ptp(self.session.take.weights[start:stop], axis=0) + face
+        self._frame = self.session.view.playhead
+        face, (start, stop) = self.session.document.take.weights[self._frame], self.range
+        activity = np.ptp(self.session.document.take.weights[start:stop], axis=0) + face
         self._weights.show_face(face, activity, self._pose)
 
     def _move(self, name: str, value: float) -> None:
@@ -128,15 +124,4 @@ class PinsSection(Section):
     def _spread(self, *_: int) -> None:
         if not self._pose:
             return
-        frame, frames, pose = self._frame, self.range, dict(self._pose)
-
-        def verb(dragger: Dragger) -> Patch:
-            from engine.editing import Patch
-            from engine.spacetime.pin import PinSolver
-
-            wanted = (dragger.take, frame, frames)
-            if self._solver is None or self._solver_for != wanted:
-                self._solver, self._solver_for = PinSolver(dragger.take, {frame: pose}, frames), wanted
-            return Patch.between(dragger.take, self._solver.take({frame: pose}), frames)
-
-        self._inference.run(verb)
+        self._inference.run(PinRequest({self._frame: dict(self._pose)}, self.range))

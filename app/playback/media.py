@@ -105,7 +105,7 @@ class Media(QObject):
     @property
     def attached(self) -> bool:
         """Whether there is sound to play."""
-        return self._session.audio is not None
+        return self._session.document.audio is not None
 
     # --- what the user asks for
 
@@ -115,30 +115,30 @@ class Media(QObject):
 
     def detach(self, kind: str) -> None:
         """Let the take go on without its sound or video; the file stays where it is."""
-        record = self._session.marks.medium(kind)
+        record = self._session.document.marks.medium(kind)
         if record is not None:
             self._push(kind, None, f"detach {project.name_of(record)}")
 
     def locate(self, kind: str, path: Path) -> None:
         """Use a file in place of the one that is missing, with its beginning; another content is told."""
-        self._read(kind, path=path, record=self._session.marks.medium(kind), by_hand=True)
+        self._read(kind, path=path, record=self._session.document.marks.medium(kind), by_hand=True)
 
     def move(self, kind: str, offset_s: float) -> None:
         """Let the sound or video begin at a time in the take; moves in quick succession are one step."""
-        if self._session.sliding is not None and self._session.sliding[0] != kind:
+        if self._session.document.sliding is not None and self._session.document.sliding[0] != kind:
             self.settle()
-        if self._session.marks.medium(kind) is not None:
-            self._session.slide(kind, offset_s)
+        if self._session.document.marks.medium(kind) is not None:
+            self._session.document.slide(kind, offset_s)
             self._rest.start()
 
     def settle(self) -> None:
         """Keep the beginning that is shown, as one step."""
         self._rest.stop()
-        if self._session.sliding is None:
+        if self._session.document.sliding is None:
             return
-        kind, offset_s = self._session.sliding
-        record = self._session.marks.medium(kind)
-        self._session.slide(kind, None)
+        kind, offset_s = self._session.document.sliding
+        record = self._session.document.marks.medium(kind)
+        self._session.document.slide(kind, None)
         if record is not None and abs(record.offset_s + offset_s) > 1e-9:
             title = f"move the {WORDS[kind]} to {offset_s * 1e3:+.0f} ms"
             self._push(kind, replace(record, offset_s=0.0 - offset_s), title)
@@ -146,12 +146,12 @@ class Media(QObject):
     def settle_in(self, folder: Path) -> None:
         """Name all media as a project in a folder does."""
         self.settle()
-        marks = self._session.marks
+        marks = self._session.document.marks
         for record in marks.media:
             place = self._places.get(record.sha256)
             if place is not None:
                 marks = marks.with_medium(record.kind, project.placed(record, place, folder))
-        self._session.set_marks(marks)
+        self._session.document.set_marks(marks)
 
     def mute(self, on: bool) -> None:
         """Play without sound; time runs by it all the same."""
@@ -183,7 +183,7 @@ class Media(QObject):
             self._opening += 1
             self._shown.clear()
             self._tell_missing({})
-            self._look_beside(self._session.path)
+            self._look_beside(self._session.document.path)
         if change & (Change.TAKE | Change.MARKS):
             self._follow_marks()
         if change & (Change.TAKE | Change.MEDIA):
@@ -202,7 +202,7 @@ class Media(QObject):
     def _follow_marks(self) -> None:
         """Look for what the marks name, and let go of what they name no more."""
         for kind in MEDIA:
-            record = self._session.marks.medium(kind)
+            record = self._session.document.marks.medium(kind)
             content = record.sha256 if record is not None else ""
             if content == self._shown.get(kind, ""):
                 continue
@@ -215,7 +215,7 @@ class Media(QObject):
     def _read(
         self, kind: str, *, path: Path | None = None, record: Record | None = None, by_hand: bool = False
     ) -> None:
-        base = self._session.path.parent if self._session.path is not None else None
+        base = self._session.document.path.parent if self._session.document.path is not None else None
         place = self._place(record.sha256) if record is not None else None
         folders = [folder for folder in (base, place and place.parent) if folder is not None]
         self.reading.submit(_Wanted(self._opening, kind, path, record, tuple(folders), by_hand), kind)
@@ -230,7 +230,7 @@ class Media(QObject):
         """Show what was read, unless its take is closed or has got something else in the meantime."""
         if result is None:
             return  # there was nothing beside the take
-        now = self._session.marks.medium(wanted.kind)
+        now = self._session.document.marks.medium(wanted.kind)
         if wanted.opening != self._opening or (wanted.record is not None and now is None):
             return
         if isinstance(result, Found):
@@ -241,7 +241,7 @@ class Media(QObject):
         elif now is None or (wanted.record is not None and now.sha256 == wanted.record.sha256):
             self._use(wanted.kind, result)
             record = replace(now, path=result.record.path) if now is not None else result.record
-            self._session.set_marks(self._session.marks.with_medium(wanted.kind, record))
+            self._session.document.set_marks(self._session.document.marks.with_medium(wanted.kind, record))
 
     def _take_in(self, wanted: _Wanted, result: _Read) -> None:
         """Attach what the user chose, as a step; the file that was missing, found again, is none."""
@@ -250,7 +250,7 @@ class Media(QObject):
         if wanted.record is None:
             self._push(wanted.kind, result.record, f"attach {name}")
         elif wanted.record.sha256 == result.record.sha256:
-            self._session.set_marks(self._session.marks.with_medium(wanted.kind, result.record))
+            self._session.document.set_marks(self._session.document.marks.with_medium(wanted.kind, result.record))
         else:
             self._push(wanted.kind, result.record, f"replace {project.name_of(wanted.record)}")
             self.failed.emit(f"{name} is not the file that was attached; it is used from now on.", "Undo goes back.")
@@ -266,13 +266,13 @@ class Media(QObject):
 
     def _show(self, kind: str, result: _Read | None) -> None:
         if kind == "audio":
-            self._session.attach_audio(result.sound if result else None)
+            self._session.document.attach_audio(result.sound if result else None)
         else:
-            self._session.attach_video(result.path if result else None)
+            self._session.document.attach_video(result.path if result else None)
 
     def _push(self, kind: str, record: Record | None, title: str) -> None:
-        marks = self._session.marks.with_medium(kind, record)
-        self._session.undo.push(MarkCommand(self._session, marks, title))
+        marks = self._session.document.marks.with_medium(kind, record)
+        self._session.document.undo.push(MarkCommand.of(self._session.document, marks, title))
 
     def _tell_missing(self, missing: dict[str, Found]) -> None:
         if missing != self.missing:
@@ -289,7 +289,7 @@ class Media(QObject):
     # --- the clock
 
     def _choose_clock(self) -> None:
-        recording, offset_s = self._session.audio, self._session.offset_s("audio")
+        recording, offset_s = self._session.document.audio, self._session.document.offset_s("audio")
         clock = self._transport.clock
         if recording is self._playing:
             if isinstance(clock, AudioClock):

@@ -10,7 +10,7 @@ from pathlib import Path
 import platformdirs
 
 from app.settings import NAME
-from engine.formats.livelink_folder import copy_film
+from engine.formats.livelink.folder import copy_film
 
 UNUSED_S = 30 * 86_400.0  # after which a copy goes
 

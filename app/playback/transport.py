@@ -10,7 +10,7 @@ from app.playback.clock import Clock, WallClock
 from app.session import Change, Session
 
 TICKS_HZ = 60
-SPEEDS = (1.0, 2.0, 4.0)
+SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0)
 ROUNDING_FRAMES = 0.01  # a clock that counts samples may be half a sample short of the frame it was sent to
 
 
@@ -55,17 +55,25 @@ class Transport(QObject):
             self.run(0.0)
             return
         start, stop = self._range()
-        if not start <= self._session.playhead < stop - 1:
+        if not start <= self._session.view.playhead < stop - 1:
             self._move(start)
         self.run(1.0)
 
     def faster(self, direction: int) -> None:
         """Play forwards (1) or backwards (-1); again for twice as fast."""
+        self._step(direction, 1, first=1.0)
+
+    def slower(self, direction: int) -> None:
+        """Play forwards (1) or backwards (-1) at half the speed; again for half of that."""
+        self._step(direction, -1, first=0.5)
+
+    def _step(self, direction: int, by: int, *, first: float) -> None:
+        """Play in a direction at a first speed, or by a step faster or slower where it plays there already."""
         if self.speed * direction <= 0:
-            self.run(SPEEDS[0] * direction)
+            self.run(first * direction)
         else:
-            at = SPEEDS.index(abs(self.speed)) if abs(self.speed) in SPEEDS else 0
-            self.run(SPEEDS[min(at + 1, len(SPEEDS) - 1)] * direction)
+            at = SPEEDS.index(abs(self.speed)) if abs(self.speed) in SPEEDS else SPEEDS.index(1.0)
+            self.run(SPEEDS[min(max(at + by, 0), len(SPEEDS) - 1)] * direction)
 
     def run(self, speed: float) -> None:
         """Play at a speed; 0 stands still."""
@@ -88,7 +96,7 @@ class Transport(QObject):
     def tick(self) -> None:
         """Go to the frame that the clock is at; frames it has passed are dropped."""
         start, stop = self._range()
-        at = self.clock.now_s() * self._session.take.fps
+        at = self.clock.now_s() * self._session.document.take.fps
         frame = math.floor(at + ROUNDING_FRAMES) if self.speed > 0 else math.ceil(at - ROUNDING_FRAMES)
         if self._looping():
             frame = min(max(frame, start), stop - 1)
@@ -99,7 +107,7 @@ class Transport(QObject):
             self.run(0.0)
 
     def _range(self) -> tuple[int, int]:
-        return self._session.selection or (0, len(self._session.take))
+        return self._session.view.selection or (0, len(self._session.document.take))
 
     def _looping(self) -> bool:
         start, stop = self._range()
@@ -108,17 +116,17 @@ class Transport(QObject):
     def _begin(self) -> None:
         """Send the clock to the playhead, which is brought into the range."""
         start, stop = self._range()
-        if not start <= self._session.playhead < stop:
+        if not start <= self._session.view.playhead < stop:
             self._move(start if self.speed > 0 else stop - 1)
-        fps = self._session.take.fps
+        fps = self._session.document.take.fps
         self.clock.play(
-            self._session.playhead / fps, self.speed, (start / fps, stop / fps) if self._looping() else None
+            self._session.view.playhead / fps, self.speed, (start / fps, stop / fps) if self._looping() else None
         )
 
     def _move(self, frame: int) -> None:
         self._moving = True
         try:
-            self._session.move_playhead(frame)
+            self._session.view.move_playhead(frame)
         finally:
             self._moving = False
 
@@ -129,4 +137,4 @@ class Transport(QObject):
         if self.playing and change & (Change.PLAYHEAD | Change.SELECTION):
             self._begin()
         elif change & Change.PLAYHEAD:
-            self.clock.scrub(self._session.playhead / self._session.take.fps)
+            self.clock.scrub(self._session.view.playhead / self._session.document.take.fps)

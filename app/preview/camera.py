@@ -60,15 +60,20 @@ class Camera:
         right /= np.linalg.norm(right)
         return right, np.cross(ahead, right), ahead
 
+    def shown(self, low: Array, high: Array, *, aspect: float) -> float:
+        """Return the height in mm that the picture shows of the plane through the middle of the box low..high."""
+        size = high - low
+        if self.frame is not None:
+            return float(size[1] * max(self.frame[1], self.frame[0] / aspect) / self.zoom)
+        right, _, _ = self._axes()
+        wide = abs(right[0]) * FACE_WIDTH * size[0] + abs(right[2]) * size[2]
+        return float(1.06 * max(size[1], wide / aspect) / self.zoom)
+
     def pose(self, low: Array, high: Array, *, aspect: float) -> Array:
         """Return the (4, 4) camera pose that frames the box low..high, (3,) each, for a width / height."""
         size = high - low
         right, up, ahead = self._axes()
-        if self.frame is None:
-            wide = abs(right[0]) * FACE_WIDTH * size[0] + abs(right[2]) * size[2]
-            shown = 1.06 * max(size[1], wide / aspect) / self.zoom
-        else:
-            shown = size[1] * max(self.frame[1], self.frame[0] / aspect) / self.zoom
+        shown = self.shown(low, high, aspect=aspect)
         target = (low + high) / 2 + size[1] * (self.pan[0] * right + self.pan[1] * up)
         pose = np.eye(4)
         pose[:3, :3] = np.stack([right, up, ahead], axis=1)

@@ -21,18 +21,20 @@ class Codec:
     ----------
     encoder : its name in FFmpeg
     options : for the encoder; all at about 42 dB
+    sound : the encoder of the sound beside it: Opus where whoever plays the picture plays that too
     """
 
     encoder: str
     options: Mapping[str, str]
+    sound: str = "libopus"
 
 
 # AV1 and VP9 are free of licences to pay; their encoders, and MPEG-4's, are BSD or LGPL. x264 is GPL: see THIRD_PARTY.md.
 CODECS: dict[str, Codec] = {
     "av1": Codec("libsvtav1", {"crf": "24", "preset": "9", "svtav1-params": "lp=2"}),
     "vp9": Codec("libvpx-vp9", {"crf": "24", "b": "0", "deadline": "realtime", "cpu-used": "6", "row-mt": "1"}),
-    "mpeg4": Codec("mpeg4", {"qmin": "2", "qmax": "2"}),
-    "h264": Codec("libx264", {"crf": "18"}),
+    "mpeg4": Codec("mpeg4", {"qmin": "2", "qmax": "2"}, sound="aac"),
+    "h264": Codec("libx264", {"crf": "18"}, sound="aac"),
 }
 BY_DEFAULT = ("av1", "vp9", "mpeg4")
 
@@ -48,6 +50,11 @@ def codec_named(name: str | None) -> Codec:
             return CODECS[each]
     asked = f"the codec {name}" if name else "a codec for movies"
     raise EditError(f"The FFmpeg that Retake runs on lacks {asked}.", "Install the av package from its makers.")
+
+
+def sound_encoder(codec: Codec) -> str:
+    """Return the encoder of the sound beside a codec's pictures, AAC where FFmpeg lacks the better one."""
+    return codec.sound if _is_there(codec.sound) else "aac"
 
 
 def _is_there(encoder: str) -> bool:

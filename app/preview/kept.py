@@ -7,7 +7,7 @@ from collections import OrderedDict
 from app.preview.renderer import Picture
 from app.preview.worker import Wanted
 
-KEPT = 4  # before, after, split and difference of one frame; some MB each
+KEPT = 5  # before, after, wipe, split and difference of one frame; some MB each
 
 Key = tuple[object, ...]
 

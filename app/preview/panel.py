@@ -6,175 +6,35 @@ import time
 from dataclasses import replace
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import (
-    QColor,
-    QContextMenuEvent,
-    QImage,
-    QMouseEvent,
-    QPainter,
-    QPaintEvent,
-    QResizeEvent,
-    QWheelEvent,
-)
-from PySide6.QtWidgets import (
-    QComboBox,
-    QFrame,
-    QHBoxLayout,
-    QSizePolicy,
-    QSplitter,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtCore import QPointF, QTimer, Signal
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QComboBox, QFrame, QHBoxLayout, QSplitter, QToolButton, QVBoxLayout, QWidget
 
 from app.preview.camera import PRESETS, Camera, looking
+from app.preview.face import Face
 from app.preview.kept import KeptPictures
-from app.preview.overlay import Overlay, draw_scale
+from app.preview.marking import camera_of
+from app.preview.overlay import Overlay
 from app.preview.picking import vertex_under
-from app.preview.renderer import GROUND, Picture, Shot
+from app.preview.renderer import Picture, Shot
 from app.preview.worker import Wanted, render_thread
 from app.session import Change, Session
-from app.session.inference import Inference
+from app.session.edits import Editing
 from app.session.sides import Side
 from app.theme import GRID
 from app.widgets.text import Label
 from engine.character import Character, bundled
 from engine.framing import framed
+from engine.project import Drawing
 from engine.take import Array
 from engine.words import SENTENCE_LENGTH, plain
 
-VIEWS = ("Before", "After", "Split", "Difference")
+VIEWS = ("Before", "After", "Wipe", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
 WIDE = 0.6  # of what preview and curves share, for two heads
-ROUNDED_PX = 4  # a picture of half the resolution is no more than this narrower or wider
-CLICK_PX = 4  # a press that moves no further is a click
 STRIP_PX = (70, 88)  # one face of a strip
 STRIP_CAMERA = Camera(zoom=1.5, pan=(0.0, -0.07))
-
-
-class Face(QWidget):
-    """The picture; drag orbits, right-drag or Shift-drag pans, wheel zooms, double-click frames the head."""
-
-    camera_moved = Signal(object)
-    clicked = Signal(QPointF)
-    menu_wanted = Signal(QPoint)  # on the screen
-    resized = Signal()  # a picture of another size is wanted
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.camera = Camera()
-        self.image = QImage()
-        self.view = self.pictured = "After"  # what is chosen, and what the picture shows by now
-        self.message = "Preparing the preview…"
-        self.overlay: Overlay | None = None
-        self._grip: QPointF | None = None
-        self._pressed_at = QPointF()
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.setMinimumSize(200, 200)
-        self.setCursor(Qt.CursorShape.OpenHandCursor)
-        self.setAccessibleName("Face preview")
-
-    def sizeHint(self) -> QSize:
-        """Prefer a portrait."""
-        return QSize(460, 620)
-
-    def show_picture(self, picture: Picture, overlay: Overlay | None = None, view: str = "") -> None:
-        """Show a picture, (height, width, 3) uint8, of one of the views, and what is drawn over it."""
-        self.overlay, self.pictured = overlay, view or self.view
-        height, width = picture.shape[:2]
-        self.image = QImage(picture.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
-        self.message = ""
-        self.repaint()
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw the picture, then what labels it."""
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(*GROUND))
-        if not self.image.isNull():
-            painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-            painter.drawImage(self.picture_box(), self.image)
-        painter.setPen(QColor("#e3e6eb"))
-        if self.message:
-            flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
-            painter.drawText(self.rect().adjusted(24, 24, -24, -24), flags, self.message)
-        elif self.overlay is not None:
-            self.overlay.draw(painter)
-        elif self.pictured == "Split":
-            middle = self.width() // 2
-            painter.drawLine(middle, 0, middle, self.height())
-            painter.drawText(GRID, 18, "before")
-            painter.drawText(middle + GRID, 18, "after")
-        elif self.pictured == "Difference":
-            draw_scale(painter, self.height())
-
-    def picture_box(self) -> QRectF:
-        """Return where the picture is: everywhere; one of another format in its own, until the next one comes."""
-        width = self.image.width() * self.height() / max(1, self.image.height())
-        if abs(width - self.width()) <= ROUNDED_PX:
-            return QRectF(self.rect())
-        return QRectF((self.width() - width) / 2, 0.0, width, self.height())
-
-    def event(self, event: QEvent) -> bool:
-        """Ask for another picture on a screen of another resolution."""
-        if event.type() == QEvent.Type.DevicePixelRatioChange:
-            self.resized.emit()
-        return super().event(event)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        """Ask for a picture of the new size."""
-        super().resizeEvent(event)
-        self.resized.emit()
-
-    def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Take hold of the camera."""
-        self._grip = self._pressed_at = event.position()
-        self.setCursor(Qt.CursorShape.ClosedHandCursor)
-
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Orbit or pan."""
-        if self._grip is None or (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX:
-            return
-        moved = event.position() - self._grip
-        self._grip = event.position()
-        if event.buttons() & Qt.MouseButton.RightButton or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            scale = 1.0 / (self.height() * self.camera.zoom)
-            self._move(self.camera.panned(-moved.x() * scale, moved.y() * scale))
-        else:
-            self._move(self.camera.orbited(around_deg=-0.4 * moved.x(), above_deg=0.4 * moved.y()))
-
-    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """Let go; a press that went nowhere is a click."""
-        self._grip = None
-        clicked = (event.position() - self._pressed_at).manhattanLength() <= CLICK_PX
-        if clicked and event.button() == Qt.MouseButton.RightButton:
-            self.menu_wanted.emit(event.globalPosition().toPoint())
-        elif clicked:
-            self.clicked.emit(event.position())
-        self.setCursor(Qt.CursorShape.OpenHandCursor)
-
-    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
-        """Frame the whole head from the front."""
-        self.frame_head()
-
-    def frame_head(self) -> None:
-        """Look at the whole head from the front."""
-        self._move(Camera())
-
-    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Offer what can be done with the face; the mouse's own way is a right click, since a right drag pans."""
-        event.accept()
-        if event.reason() == QContextMenuEvent.Reason.Keyboard:
-            self.menu_wanted.emit(self.mapToGlobal(self.rect().center()))
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom."""
-        self._move(self.camera.zoomed(1.15 ** (event.angleDelta().y() / 120.0)))
-
-    def _move(self, camera: Camera) -> None:
-        self.camera = camera
-        self.camera_moved.emit(camera)
 
 
 class PreviewPanel(QFrame):
@@ -194,7 +54,7 @@ class PreviewPanel(QFrame):
     dot_clicked = Signal(str)  # name of a marker
     view_changed = Signal(str)  # one of VIEWS
 
-    def __init__(self, session: Session, inference: Inference) -> None:
+    def __init__(self, session: Session, inference: Editing) -> None:
         super().__init__()
         self.setProperty("panel", True)
         self._session, self._inference = session, inference
@@ -216,6 +76,7 @@ class PreviewPanel(QFrame):
         self.drawing.done.connect(self._arrived)
         self.drawing.failed.connect(self._refused)
         self._lay_out()
+        self.face.setMouseTracking(True)
         self.face.camera_moved.connect(lambda _: self.refresh())
         self.face.resized.connect(self.refresh)
         self.face.clicked.connect(self._pick)
@@ -265,6 +126,41 @@ class PreviewPanel(QFrame):
         self.view_changed.emit(name)
         self.refresh(moving=False)  # nothing moves: a coarse picture first would flicker
 
+    def step_wipe(self, by: int) -> None:
+        """Move the line between before and after a step; the view is changed to the one that has it."""
+        if self.face.view != "Wipe":
+            self.show_view("Wipe")
+        self.face.wipe.step(by)
+        self.face.update()
+
+    def draw_on(self, on: bool) -> None:
+        """Let a drag draw on the picture of one face, or turn it again."""
+        if on and self.face.view == "Split":
+            self.show_view("After")
+        self.face.draw_on(on)
+
+    def drawn(self) -> Drawing | None:
+        """Return what was drawn on the picture since it was last asked for."""
+        drawing = self.face.marking.taken(self.face.camera)
+        self.face.update()
+        return drawing
+
+    def look_at(self, drawing: Drawing) -> None:
+        """Look at the face from where a drawing was drawn."""
+        camera = camera_of(drawing)
+        if camera is not None and camera != self.face.camera:
+            self.face.camera = camera
+            self.refresh(moving=False)
+
+    def _show_noted(self) -> None:
+        """Show what was drawn for the notes at the playhead."""
+        frame, notes = self._session.view.playhead, self._session.document.marks.notes
+        here = (note.drawing for note in notes if note.frame <= frame < note.stop and note.drawing is not None)
+        noted = () if self._live is not None else tuple(here)
+        if noted != self.face.noted:
+            self.face.noted = noted
+            self.face.update()
+
     def look_from(self, name: str) -> None:
         """Look at the face from a named place."""
         head = (self._sides[0].head if self._sides else self._character) or bundled()
@@ -275,7 +171,7 @@ class PreviewPanel(QFrame):
 
     def show_character(self, character: Character | None) -> None:
         """Show another head; None is the bundled one."""
-        self._character = character
+        self._character = self.face.head = character
         self.refresh()
 
     def close_renderer(self) -> None:
@@ -289,11 +185,13 @@ class PreviewPanel(QFrame):
             return
         self._coarse = moving and self._spent_ms > BUDGET_MS
         ratio = self.devicePixelRatioF() * (0.5 if self._coarse and self._quick_ms > BUDGET_MS else 1.0)
-        size = (int(self.face.width() * ratio), int(self.face.height() * ratio))
+        pictures = 2 if self._wiped else 1
+        size = (pictures * int(self.face.width() * ratio), int(self.face.height() * ratio))
         self._asked_at = time.perf_counter()
         shot = replace(self._shot(), size=size, smooth_edges=not self._coarse)
         live = self._live is not None
-        wanted = Wanted(shot, self._character, since, live=live, sides=self._sides, view=self.face.view)
+        view = "After" if live or self._sides else self.face.view
+        wanted = Wanted(shot, self._character, since, live=live, sides=self._sides, view=view)
         kept = self._kept.get(wanted)
         self._from_kept = kept is not None
         if kept is not None:
@@ -333,12 +231,17 @@ class PreviewPanel(QFrame):
             self.drawing.submit(Wanted(Shot(tuple(faces), STRIP_CAMERA, size), self._character, strip=True), "strip")
 
     def _show_frame(self) -> None:
-        self._frame_label.setText("live" if self._live is not None else f"frame {self._session.playhead:,}")
+        self._frame_label.setText("live" if self._live is not None else f"frame {self._session.view.playhead:,}")
+
+    @property
+    def _wiped(self) -> bool:
+        """Whether two whole pictures are wanted, one over the other."""
+        return self.face.view == "Wipe" and self._live is None and not self._sides
 
     def _shot(self) -> Shot:
         session, view = self._session, self.face.view
-        after = session.frame_weights(session.playhead)
-        before = np.asarray(session.original.weights[session.playhead])
+        after = session.document.frame_weights(session.view.playhead)
+        before = np.asarray(session.document.original.weights[session.view.playhead])
         camera = self.face.camera
         if self._live is not None:
             return Shot((self._live,), camera)
@@ -347,7 +250,7 @@ class PreviewPanel(QFrame):
             return Shot(tuple(side.weights for side in self._sides), camera, heads=heads)
         if view == "Before":
             return Shot((before,), camera)
-        if view == "Split":
+        if view in ("Split", "Wipe"):
             return Shot((before, after), camera)
         if view == "Difference":
             return Shot((after,), camera, compared_to=before)
@@ -363,7 +266,7 @@ class PreviewPanel(QFrame):
         spent = (time.perf_counter() - self._asked_at) * 1e3
         if wanted.shot.smooth_edges:
             self._spent_ms = spent
-        elif wanted.shot.size[0] > 0.75 * self.face.width() * self.devicePixelRatioF():
+        elif wanted.shot.size[1] > 0.75 * self.face.height() * self.devicePixelRatioF():
             self._quick_ms = spent
         self._kept.put(wanted, picture)
         if self._from_kept:
@@ -399,11 +302,13 @@ class PreviewPanel(QFrame):
 
     def _on_change(self, change: Change) -> None:
         if change & Change.CHARACTER:
-            self._character = self._session.character
+            self._character = self.face.head = self._session.document.character
+        if change & (Change.TAKE | Change.MARKS | Change.PLAYHEAD):
+            self._show_noted()
         if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.CHARACTER):
             session = self._session
             self._show_frame()
-            drafted = change & Change.DRAFT and session.draft is not None and self._inference.busy
+            drafted = change & Change.DRAFT and session.document.draft is not None and self._inference.busy
             self.refresh(since=self._inference.since if drafted else 0.0)
 
     def showEvent(self, event: object) -> None:

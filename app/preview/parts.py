@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.character import Character
+from engine.mesh import parts_of
 from engine.take import Array
 
 Labels = npt.NDArray[np.int64]  # (vertices,) a number for each part
@@ -16,14 +17,7 @@ EYE_RADII_MM, ROUND, HALF = (9.0, 16.0), 0.12, 0.8  # about 12 mm; the cornea st
 
 def part_of(character: Character) -> Labels:
     """Return which part each vertex belongs to."""
-    from scipy import sparse
-    from scipy.sparse.csgraph import connected_components
-
-    triangles, count = character.triangles, len(character.neutral)
-    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]]])
-    links = sparse.coo_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(count, count))
-    _, part = connected_components(links, directed=False)
-    return np.asarray(part, np.int64)
+    return parts_of(character.triangles, len(character.neutral))
 
 
 def shell_and_rest(character: Character, part: Labels) -> tuple[Triangles, Triangles]:

@@ -12,8 +12,9 @@ from app.preview.camera import FIELD_OF_VIEW_DEG, Camera
 from app.preview.lighting import Lighting
 from app.session.sides import Side
 from engine import character
-from engine.character import Character, drawable
+from engine.character import Character
 from engine.framing import framed
+from engine.jaw import drawable
 from engine.take import Array, Mask
 
 EDGE_ON = 0.05  # cosine between skin and view below which a dot is behind the head

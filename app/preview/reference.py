@@ -130,18 +130,18 @@ class ReferencePanel(QFrame):
     def _on_change(self, change: Change) -> None:
         session = self._session
         if change & (Change.TAKE | Change.MEDIA):
-            self.setVisible(session.video is not None)
-        if session.video is not None and change & (Change.TAKE | Change.MEDIA | Change.PLAYHEAD):
+            self.setVisible(session.document.video is not None)
+        if session.document.video is not None and change & (Change.TAKE | Change.MEDIA | Change.PLAYHEAD):
             # the middle of the take's frame, or rounding would decide between two frames of a video at the same rate
-            time_s = (session.playhead + 0.5) / session.take.fps - session.offset_s("video")
-            self.reading.submit(_Wanted(session.video, time_s))
+            time_s = (session.view.playhead + 0.5) / session.document.take.fps - session.document.offset_s("video")
+            self.reading.submit(_Wanted(session.document.video, time_s))
 
     def _arrived(self, wanted: _Wanted, frame: Frame | None) -> None:
-        if wanted.path == self._session.video:
+        if wanted.path == self._session.document.video:
             self.shown.show_picture(None if frame is None else frame.picture)
 
     def _refused(self, wanted: _Wanted, sentence: str, advice: str) -> None:
         """Say what is wrong, once: the video is put away, and looked for again when the project is opened."""
-        if wanted.path == self._session.video:
-            self._session.attach_video(None)
+        if wanted.path == self._session.document.video:
+            self._session.document.attach_video(None)
             self.failed.emit(sentence, advice)

@@ -205,7 +205,11 @@ class Renderer:
 
 
 def _pyrender() -> Any:
-    # pyrender 0.1.45 was written for numpy 1, which had this second name for infinity.
+    # pyrender 0.1.45 was written for numpy 1, which had this second name for infinity. Its maintained forks of the same
+    # import name, pyrender2 0.2.2 and pyrender-maintained 1.0.1, have dropped it: with either, these two lines can go, and
+    # so can `six` and the exception for PyOpenGL in packaging/overrides.txt. All pictures and the tests of the preview come
+    # out alike on both. The other patches here they leave as needful: writing vertices in place, the number of samples,
+    # and reading the depth.
     if not hasattr(np, "infty"):
         np.infty = np.inf  # type: ignore[attr-defined]  # noqa: NPY201
     import pyrender

@@ -20,7 +20,7 @@ from app.widgets.saving import ask_where, beside
 from app.widgets.section import Section
 from engine.errors import EngineError
 
-HEADS = "Heads (*.npz *.glb *.gltf *.vrm *.obj)"
+HEADS = "Heads (*.npz *.glb *.gltf *.vrm *.obj *.ply *.stl)"
 CAPTURES = "Markers (*.csv *.tsv *.trc *.c3d)"
 SUGGESTED = 4
 
@@ -88,7 +88,7 @@ class RetargetActions(QObject):
     def take_in(self, path: Path) -> None:
         """Carry a capture that was dropped on the window."""
         self.retarget_tool()
-        self.retargeting.open_markers(path)
+        self.retargeting.choosing.open_markers(path)
 
     def _show(self) -> None:
         self.shown.emit(
@@ -99,27 +99,27 @@ class RetargetActions(QObject):
 
     def retarget_tool(self) -> None:
         """Work with the Retarget tool."""
-        self._session.choose_tool("retarget")
+        self._session.view.choose_tool("retarget")
 
     def open_markers(self) -> None:
         """Choose a capture to carry."""
-        self._with_file("Markers to carry", CAPTURES, self.retargeting.open_markers)
+        self._with_file("Markers to carry", CAPTURES, self.retargeting.choosing.open_markers)
 
     def choose_target(self) -> None:
         """Choose the head to carry to."""
-        self._with_file("The target head", HEADS, self.retargeting.choose_target)
+        self._with_file("The target head", HEADS, self.retargeting.choosing.choose_target)
 
     def choose_target_folder(self) -> None:
         """Choose a folder of OBJ files as the head to carry to."""
         self.retarget_tool()
         name = QFileDialog.getExistingDirectory(self._window, "A folder of OBJ files")
         if name:
-            self.retargeting.choose_target(Path(name))
+            self.retargeting.choosing.choose_target(Path(name))
 
     def own_target(self) -> None:
         """Carry to Retake's own head."""
         self.retarget_tool()
-        self.retargeting.choose_target(None)
+        self.retargeting.choosing.choose_target(None)
 
     def carry(self) -> None:
         """Solve the whole take."""
@@ -156,7 +156,7 @@ class RetargetActions(QObject):
         if frame is None:
             self.failed.emit("Nothing was solved from labels yet.", "Label some frames and solve; then it can be told.")
         else:
-            self._session.move_playhead(frame)
+            self._session.view.move_playhead(frame)
 
     def save_labels(self) -> None:
         """Choose a file and write the labels."""
@@ -192,7 +192,7 @@ class RetargetActions(QObject):
 
     def _to_file(self, title: str, stem: str, kinds: Mapping[str, str], use: Callable[[Path], None]) -> None:
         path, _ = ask_where(
-            self._window, title, beside(self._session.path, f"{stem}{next(iter(kinds.values()))}"), kinds
+            self._window, title, beside(self._session.document.path, f"{stem}{next(iter(kinds.values()))}"), kinds
         )
         if path is not None:
             self._try(lambda: use(path))

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.retarget.carry import Target, with_markers
+from engine.editing import capture_of
 from engine.errors import EditError
 from engine.formats import markers
 from engine.formats.characters.marker_table import MarkerMatch, MarkerTable
 from engine.words import counted
 
 if TYPE_CHECKING:
-    from engine.spacetime.source import Source
+    from engine.editing import Source
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +45,6 @@ def captured(path: Path, neutral_frame: int, target: Target) -> Capture:
     Markers that lie on no face are kept: a person places them.
     """
     from engine.formats.characters.marker_places import match_markers
-    from engine.spacetime.source import from_markers
 
     read, doubt = markers.read(path), None
     if not 0 <= neutral_frame < len(read):
@@ -54,7 +54,7 @@ def captured(path: Path, neutral_frame: int, target: Target) -> Capture:
     except EditError as error:
         doubt = error
         table = MarkerTable(tuple(MarkerMatch(name, "", 0.0, "by place") for name in read.names))
-    source = from_markers(
+    source = capture_of(
         read, neutral_frame=neutral_frame, turn=None if doubt else table.turn, landmarks=table.landmarks
     )
     return Capture(source, with_markers(target, source, table), doubt)

@@ -54,9 +54,9 @@ class HeadSection(Section):
             grid.addWidget(quiet(title), row, 0)
             grid.addWidget(box, row, 1)
         self.column.addWidget(self._frame)
-        self.unit.activated.connect(lambda _: retargeting.read_anew(unit=_chosen(self.unit)))
-        self.up.activated.connect(lambda _: retargeting.read_anew(up=_chosen(self.up)))
-        self.facing.activated.connect(lambda _: retargeting.read_anew(facing_deg=_degrees(self.facing)))
+        self.unit.activated.connect(lambda _: retargeting.choosing.read_anew(unit=_chosen(self.unit)))
+        self.up.activated.connect(lambda _: retargeting.choosing.read_anew(up=_chosen(self.up)))
+        self.facing.activated.connect(lambda _: retargeting.choosing.read_anew(facing_deg=_degrees(self.facing)))
         self.table = QTableWidget(0, 2)
         self.table.setHorizontalHeaderLabels(["In the file", "Taken for"])
         self.table.setAccessibleName("Shapes of the head")
@@ -79,10 +79,10 @@ class HeadSection(Section):
     def show_all(self) -> None:
         """Show how the target was read."""
         state = self._retargeting
-        made, refused = state.target.imported, state.refused
+        made, refused = state.target.imported, state.choosing.refused
         reading = refused[1] if refused else state.target.reading
         self.needed = made is not None or refused is not None
-        self.setVisible(self.needed and self.session.tool in self.tools)
+        self.setVisible(self.needed and self.session.view.tool in self.tools)
         for part in (self._frame, self.table, self.all_shapes):
             part.setVisible(made is not None or (refused is not None and part is self._frame))
         for box, value in ((self.unit, reading.unit), (self.up, reading.up), (self.facing, _turn(reading.facing_deg))):
@@ -125,7 +125,7 @@ class HeadSection(Section):
     def _take(self, name: str) -> None:
         text = self.boxes[name].currentText()
         names = dict(self._retargeting.target.reading.names)
-        self._retargeting.read_anew(names={**names, name: "" if text == LEFT_OUT else text})
+        self._retargeting.choosing.read_anew(names={**names, name: "" if text == LEFT_OUT else text})
 
 
 class _Box(QComboBox):

@@ -47,8 +47,8 @@ class KeptHeads:
             self._heads[key] = None  # where it cannot be read, once is enough
             path, reading = Path(key[0]), Reading.restored(inputs.get("reading"))
             self._submit(lambda: opened(path, reading), lambda target: self._take(key, target))
-        elif self._heads[key] is not self._session.character:
-            self._session.play_on(self._heads[key])
+        elif self._heads[key] is not self._session.document.character:
+            self._session.document.play_on(self._heads[key])
 
     def _take(self, key: tuple[str, str], target: Target) -> None:
         self._heads[key] = target.head

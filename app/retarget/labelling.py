@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from app.retarget.carry import Pose, points_of
-from app.retarget.retargeting import LABELS, Retargeting
+from app.retarget.carry import Pose
+from app.retarget.retargeting import Retargeting
+from app.retarget.solving import LABELS
 from app.session import Session
+from engine.editing import suggest_frames
 from engine.errors import EditError
 from engine.formats import labels as files
 from engine.formats.labels import LabelFile
@@ -45,7 +47,7 @@ class Labelling:
 
     def label(self) -> None:
         """Keep the target's pose at the playhead as a label; raises `EditError` where there is no target."""
-        frame = self._session.playhead
+        frame = self._session.view.playhead
         face = self._retargeting.face_at(frame)
         if face is None:
             raise EditError("There is no target to label.", "Choose a target in the Retarget panel.")
@@ -54,7 +56,7 @@ class Labelling:
 
     def unlabel(self) -> None:
         """Remove the label at the playhead."""
-        frame, labels = self._session.playhead, self._retargeting.target.labels
+        frame, labels = self._session.view.playhead, self._retargeting.target.labels
         if frame in labels:
             rest = {each: pose for each, pose in labels.items() if each != frame}
             self._change(rest, f"remove the label of frame {frame}")
@@ -64,16 +66,11 @@ class Labelling:
         state = self._retargeting
         performance, labelled = state.performance, sorted(state.target.labels)
 
-        def work() -> list[int]:
-            from engine.manifold.retarget import suggest_frames
-
-            return suggest_frames(points_of(performance), count, labelled=labelled)
-
-        state.submit(work, state.propose)
+        state.submit(lambda: suggest_frames(performance, count, labelled), state.propose)
 
     def read(self, path: Path) -> None:
         """Read labels, and open the head that they are for where the file names one; raises `EngineError`."""
-        stored, frames, state = files.read(path), len(self._session.take), self._retargeting
+        stored, frames, state = files.read(path), len(self._session.document.take), self._retargeting
         outside = [frame for frame in stored.labels if frame >= frames]
         if outside:
             raise EditError(f"{path.name} labels frame {outside[0]}; the take has {counted(frames, 'frame')}.")
@@ -88,7 +85,7 @@ class Labelling:
         if stored.target is None or (known is not None and known.absolute() == stored.target.absolute()):
             self._change(stored.labels, f"read {path.name}")
         else:
-            state.choose_target(stored.target, stored.labels)
+            state.choosing.choose_target(stored.target, stored.labels)
 
     def write(self, path: Path) -> None:
         """Write labels; raises `EngineError`."""
@@ -100,6 +97,6 @@ class Labelling:
 
     def _change(self, labels: Mapping[int, Pose], title: str) -> None:
         state = self._retargeting
-        result = state.result
+        solved = state.result, state.solved
         state.change_target(replace(state.target, labels=labels), title)
-        state.show(result)  # it is what the next label is posed from
+        state.show(*solved)  # it is what the next label is posed from

@@ -71,7 +71,7 @@ class LabelsBox(QWidget):
 
     def show_pose(self) -> None:
         """Show the target's pose at the playhead."""
-        frame, retargeting = self._session.playhead, self._retargeting
+        frame, retargeting = self._session.view.playhead, self._retargeting
         face = retargeting.face_at(frame)
         if face is None:
             return
@@ -79,12 +79,12 @@ class LabelsBox(QWidget):
         self._hint.setText(f"Frame {frame} has a label." if labelled else f"The target's pose at frame {frame}:")
         self.label_button.setText("Label it anew" if labelled else "Label this frame")
         self.unlabel_button.setVisible(labelled)
-        reach = round(self._session.take.fps / 2)
-        around = self._session.take.weights[max(0, frame - reach) : frame + reach + 1]
+        reach = round(self._session.document.take.fps / 2)
+        around = self._session.document.take.weights[max(0, frame - reach) : frame + reach + 1]
         self.weights.show_face(face, np.ptp(around, axis=0) + face, retargeting.draft_pose)
 
     def _show_list(self) -> None:
-        labelled, fps = self._retargeting.target.labels, self._session.take.fps
+        labelled, fps = self._retargeting.target.labels, self._session.document.take.fps
         waiting = [frame for frame in self._retargeting.suggestions if frame not in labelled]
         listed = sorted([*labelled, *waiting])
         if listed[:SHOWN] != list(self.frames):
@@ -95,7 +95,7 @@ class LabelsBox(QWidget):
 
     def _open_menu(self, frame: int, button: QPushButton, at: QPoint) -> None:
         where = button.mapToGlobal(at)
-        self._session.move_playhead(frame)
+        self._session.view.move_playhead(frame)
         self.menu_wanted.emit(where)
 
     def _lay_out_list(self, frames: list[int]) -> None:
@@ -104,7 +104,7 @@ class LabelsBox(QWidget):
         for frame in frames[:SHOWN]:
             button = self.frames[frame] = QPushButton()
             button.setToolTip("Go to this frame")
-            button.clicked.connect(lambda _=False, frame=frame: self._session.move_playhead(frame))
+            button.clicked.connect(lambda _=False, frame=frame: self._session.view.move_playhead(frame))
             button.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
             button.customContextMenuRequested.connect(partial(self._open_menu, frame, button))
             self._list.addWidget(button)

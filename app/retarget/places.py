@@ -12,8 +12,8 @@ from app.retarget.retargeting import Retargeting
 from app.session import Session
 from app.widgets.section import Section, quiet
 from app.widgets.text import tip
+from engine.editing import MARKERS
 from engine.formats.characters.marker_table import MarkerMatch
-from engine.spacetime.layout import MARKERS
 from engine.words import NAME_LENGTH, plain
 
 LIST_PX = 190

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from app.retarget.carry import Carrier, Target, with_markers, with_place
+from app.retarget.carry import Target, with_markers, with_place
 from app.retarget.retargeting import Retargeting
-from engine.formats import markers_layout
+from engine.formats.markers import layout as markers_layout
 
 
 class Placing:
@@ -76,7 +76,7 @@ class Placing:
             return
 
         def work() -> Target:
-            source = Carrier().source(performance)
+            source = performance.source
             given = {name: target.places[name] for name in source.names if name in target.by_hand}
             return replace(target, places=place_rest(source.neutral, source.names, head, given))
 

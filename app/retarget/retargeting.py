@@ -2,47 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.retarget.capture import Capture, captured
-from app.retarget.carry import (
-    Carried,
-    Carrier,
-    Carry,
-    Errand,
-    Performance,
-    Pose,
-    Stopped,
-    Target,
-    opened,
-    posed,
-    with_markers,
-)
+from app.retarget.carry import Errand, Target, posed
+from app.retarget.choosing import Choosing
 from app.retarget.commands import TargetCommand
 from app.retarget.kept import KeptHeads
+from app.retarget.live import LiveFrames
+from app.retarget.solving import KIND, LABELS, MOVEMENT, carry_out, whole
 from app.session import Change, Session
-from app.session.commands import EditCommand
-from engine.character import Character, bundled
-from engine.formats.characters.reading import Reading
-from engine.spacetime.layout import MARKERS
-from engine.spacetime.matching import Matching
+from app.session.asked import Asked
+from app.session.edits import Runner
+from engine.character import bundled
+from engine.editing import MARKERS, Matching, Performance, Retargeted
 from engine.take import SHAPES, Array
 
 if TYPE_CHECKING:
-    from engine.editing import Patch
-    from engine.spacetime.source import Source
-
-BEFORE_FRAMES, AFTER_FRAMES = 8, 24  # of the playhead, that are carried live: playing goes on while more is made
-AHEAD_FRAMES = 12  # how near the end of what is known the playhead may come before more is asked for
-MOVEMENT, LABELS = "movement", "labels"
-KIND = "retarget"  # of the edits that put a take on another head
+    from engine.editing import Patch, Source
 
 
 class Retargeting(QObject):
@@ -60,49 +42,43 @@ class Retargeting(QObject):
     matching : how movement is matched
     result : the whole take as the target plays it, until it is kept or dropped
     share : how far the solve is, 0..1; None while nothing is solved
-    opening : the name of the file that is being opened, or nothing
+    choosing : reads sources and targets
     suggestions : frames that are worth a label, best first
     draft_pose : weights of the target that were moved at the playhead
-    refused : a head that could not be used as it was read, and how it was; None where there is none
     """
 
     changed = Signal()
     drawn = Signal()  # other weights, all else alike
     progress = Signal(float)
     failed = Signal(str, str)
-    capture_opened = Signal(object)  # a Take of the capture's length
-    head_read = Signal(object)  # the head to show the take on, or None for the bundled one
-    told = Signal(str)  # what is being read, or nothing
 
     def __init__(self, session: Session) -> None:
         super().__init__()
         self._session = session
         self.target, self.capture = Target(), None
         self.method, self.matching = MOVEMENT, Matching()
-        self.result: Carried | None = None
-        self.live: Carried | None = None
+        self.result: Retargeted | None = None
+        self.solved: Asked | None = None
         self.share: float | None = None
-        self.opening = ""
         self.draft_pose: dict[str, float] = {}
         self.suggestions: list[int] = []
-        self._capture_path: Path | None = None
         self._performance: Performance | None = None
-        self._solving: Carry | None = None
-        self._live_for: tuple[object, ...] = ()
-        self._live_span = (0, 0)
-        self._carrier, self._live_carrier = Carrier(), Carrier()
-        self._whole, self._short = (LatestWins(_run, name=name) for name in ("retarget", "retarget live"))
+        self._solver = Runner(session, carry_out, name="retarget")
+        self._solver.arrived.connect(self._finish)
+        self._solver.progress.connect(self._advance)
+        self._solver.failed.connect(self._solve_refused)
+        self._nearby = Runner(session, carry_out, name="retarget live")
+        self._nearby.failed.connect(self.failed)
+        self._whole, self._short = (LatestWins(_run, name=name) for name in ("heads", "shown heads"))
         for thread in (self._whole, self._short):
             thread.done.connect(self._deliver)
         self._whole.failed.connect(self._refused)
         self._short.failed.connect(self._short_refused)
-        self.progress.connect(self._advance)
-        self._offered: Character | None = None
+        self.choosing = Choosing(session, self)
+        self._live = LiveFrames(self._nearby, self._to_be_seen, self.drawn.emit)
         self._kept_heads = KeptHeads(session, self.submit, self._follow)
-        self.refused: tuple[Path, Reading] | None = None
-        self._opening_head: tuple[Path | None, Reading] | None = None
         session.changed.connect(self._on_change)
-        session.undo.indexChanged.connect(self._follow)
+        session.document.undo.indexChanged.connect(self._follow)
 
     # --- what there is
 
@@ -113,7 +89,9 @@ class Retargeting(QObject):
         """What is carried."""
         if self._performance is None:
             session = self._session
-            self._performance = Performance(session.take, session.character or bundled(), self.capture)
+            self._performance = Performance(
+                session.document.take, session.document.character or bundled(), self.capture
+            )
         return self._performance
 
     @property
@@ -130,7 +108,7 @@ class Retargeting(QObject):
     @property
     def idle(self) -> bool:
         """Whether nothing is being worked out."""
-        return self._whole.idle and self._short.idle
+        return all(each.idle for each in (self._solver, self._nearby, self._whole, self._short))
 
     def face_at(self, frame: int) -> Array | None:
         """Return the weights of the target at a frame, (52,), as far as they are known."""
@@ -139,121 +117,40 @@ class Retargeting(QObject):
         label = self.label_at(frame)
         base = None if self.result is None else self.result.weights_at(frame)
         if base is None and self.method == LABELS and self.capture is None:
-            base = np.asarray(self._session.take.weights[frame])
-        if base is None and self.live is not None:
-            nearest = int(np.clip(frame, self.live.start, self.live.start + len(self.live.take) - 1))
-            base = self.live.weights_at(nearest)
+            base = np.asarray(self._session.document.take.weights[frame])
+        if base is None:
+            base = self._live.face_at(frame)
         if base is None:
             base = np.zeros(len(SHAPES))
         return posed(base, label) if self.method == LABELS else base
 
     def label_at(self, frame: int) -> dict[str, float]:
         """Return the label of a frame with what is being posed there, weights by shape name."""
-        posing = self.draft_pose if frame == self._session.playhead else {}
+        posing = self.draft_pose if frame == self._session.view.playhead else {}
         return {**self.target.labels.get(frame, {}), **posing}
 
     # --- source and target
-
-    def open_markers(self, path: Path, neutral_frame: int = 0) -> None:
-        """Read a capture and carry it in place of the take."""
-
-        target = self.target
-
-        def work() -> Capture:
-            return captured(path, neutral_frame, target)
-
-        self._open(path.name, work, lambda made: self._take_capture(made, path))
-
-    def measure_from(self, frame: int) -> None:
-        """Take another frame of the capture for the face at rest."""
-        if self._capture_path is not None:
-            self.open_markers(self._capture_path, frame)
-
-    def choose_target(
-        self, path: Path | None, labels: Mapping[int, Pose] | None = None, reading: Reading | None = None
-    ) -> None:
-        """Carry to the head in a file or folder, with labels that are known for it; None is the bundled one.
-
-        `reading` is what a person corrected about it: its markers by hand and its labels stay then.
-        """
-        name = path.name if path else bundled().name
-        before, capture = self.target, self.capture
-
-        def work() -> Target:
-            found = opened(path, reading)
-            if reading is not None and before.path == path:
-                found = replace(found, labels=before.labels, by_hand=before.by_hand)
-                found = replace(
-                    found, places={**found.places, **{each: before.places[each] for each in before.by_hand}}
-                )
-            found = found if labels is None else replace(found, labels=labels)
-            return found if capture is None else with_markers(found, capture, before.markers)
-
-        title = f"carry to {name}" if reading is None else f"read {name} anew"
-        self.refused = None
-        self._open(name, work, lambda target: self.change_target(target, title), (path, reading or Reading()))
-
-    def read_anew(self, **changes: Any) -> None:
-        """Read the target again, or the head that could not be used, with fields of its `Reading` changed."""
-        path, reading = self.refused or (self.target.path, self.target.reading)
-        if path is not None:
-            self.choose_target(path, reading=replace(reading, **changes))
-
-    def show_on(self, path: Path | None) -> None:
-        """Read a head to show the take on, None for the bundled one; it is the target where the user chose no other."""
-        self.told.emit(f"reading {path.name}…" if path else "")
-        self._short.submit(Errand(lambda: opened(path) if path else Target(), self._take_shown), "head")
-
-    def _take_shown(self, offer: Target) -> None:
-        self.told.emit("")
-        self.head_read.emit(offer.head)
-        target = self.target
-        touched = target.head is not self._offered or target.labels or target.by_hand or self.result is not None
-        if target.head is None or not touched:
-            self._offered = offer.head
-            self._put(offer if self.capture is None else with_markers(offer, self.capture, target.markers))
-
-    def _open(
-        self,
-        name: str,
-        work: Callable[[], Any],
-        then: Callable[[Any], None],
-        head: tuple[Path | None, Reading] | None = None,
-    ) -> None:
-        self.cancel()
-        self.opening, self._opening_head = name, head
-        self.submit(work, then)
-        self.changed.emit()
 
     def submit(self, work: Callable[[], Any], then: Callable[[Any], None]) -> None:
         """Have work done off the GUI thread; `then` gets what it returns, and errors go to `failed`."""
         self._whole.submit(Errand(work, then))
 
-    def _take_capture(self, made: Capture, path: Path) -> None:
-        self.opening = ""
-        before = self.capture, self._capture_path
-        self.capture, self._capture_path = made.source, path
-        self.capture_opened.emit(made.source.take)
-        if self._session.take is not made.source.take:  # edits would have been lost, and the user would rather not
-            self.capture, self._capture_path = before
-        else:
-            self._put(made.on(self.target))
-            if self.target.head is None:
-                self.choose_target(None)
-            if made.doubt is not None:
-                self.failed.emit(made.doubt.sentence, "Place some of its markers on the target by hand.")
-        self.changed.emit()
+    def submit_short(self, work: Callable[[], Any], then: Callable[[Any], None], channel: str = "") -> None:
+        """Have work that takes a moment done beside what takes long; the newest of a channel wins."""
+        self._short.submit(Errand(work, then), channel)
 
     def change_target(self, target: Target, title: str) -> None:
         """Put another target in place, or another state of it, as one undo step."""
-        undo = self._session.undo
+        undo = self._session.document.undo
         clean = undo.isClean()
-        undo.push(TargetCommand(self._put, self.target, target, title))
+        undo.push(TargetCommand(self.put, self.target, target, title))
         if clean:
             undo.setClean()  # nothing of the take has changed
 
-    def _put(self, target: Target) -> None:
-        self.target, self.opening, self.refused = target, "", None
+    def put(self, target: Target) -> None:
+        """Put another target in place; for steps, and where the user chose none."""
+        self.target = target
+        self.choosing.chosen()
         self._begin_anew()
 
     def propose(self, frames: list[int]) -> None:
@@ -270,25 +167,14 @@ class Retargeting(QObject):
 
     def ask_live(self) -> None:
         """Carry the frames around the playhead, where they are not known yet."""
-        playhead, frames = self._session.playhead, len(self._session.take)
-        if not self.ready or self.result is not None or self._session.tool != "retarget":
+        view = self._session.view
+        if not self.ready or self.result is not None or view.tool != "retarget":
             return
-        if self.method == LABELS and self.capture is None:
-            return
-        wanted = (self.performance, self.target.places, self.target.head, self.matching)
-        asked = self._live_span if self._live_for == wanted else (0, 0)
-        inside = asked[0] <= playhead and (playhead + AHEAD_FRAMES < asked[1] or asked[1] == frames)
-        if inside and playhead < asked[1]:
-            return
-        span = (max(0, playhead - BEFORE_FRAMES), min(frames, playhead + AFTER_FRAMES + 1))
-        self._live_for, self._live_span = wanted, span
-        wish = Carry(self.performance, self.target, self.matching, span)
-        self._short.submit(Errand(lambda: self._live_carrier(wish, _nobody), lambda made: self._show_live(wish, made)))
+        if self.method != LABELS or self.capture is not None:
+            self._live.ask(self.performance, self.target, self.matching, playhead=view.playhead)
 
-    def _show_live(self, wish: Carry, made: Carried) -> None:
-        if wish.performance is self._performance and wish.target.head is self.target.head:
-            self.live = made
-            self.drawn.emit()
+    def _to_be_seen(self, asked: Asked) -> bool:
+        return asked.of is self._performance and getattr(asked.inputs, "head", None) is self.target.head
 
     def solve(self) -> None:
         """Carry the whole take."""
@@ -299,100 +185,80 @@ class Retargeting(QObject):
             self.failed.emit("No frame is labelled yet.", "Suggest frames, pose the target at each, and label it.")
             return
         self.cancel()
-        wish = Carry(self.performance, self.target, self.matching, from_labels=self.method == LABELS)
-        self._solving, self.share = wish, 0.0
-        self.submit(lambda: self._stoppable(wish), lambda made: self._finish(wish, made))
+        self.share = 0.0
+        self._solver.ask(whole(self.performance, self.target, self.matching, self.method))
         self.changed.emit()
 
-    def _stoppable(self, wish: Carry) -> Carried | None:
-        try:
-            return self._carrier(wish, self.progress.emit)
-        except Stopped:
-            return None
-
-    def _finish(self, wish: Carry, made: Carried | None) -> None:
-        if wish is self._solving:
-            self._solving, self.share, self.result = None, None, made
+    def _finish(self, asked: Asked, found: Retargeted) -> None:
+        if self._solver.is_last(asked):
+            self._solver.drop()
+            self.share, self.result, self.solved = None, found, asked
             self.changed.emit()
 
     def _advance(self, share: float) -> None:
-        if self._solving is not None:
+        if self._solver.last is not None:
             self.share = share
+            self.progress.emit(share)
 
     def cancel(self) -> bool:
         """Stop the solve under way; returns whether there was one."""
-        if self._solving is None:
+        if self._solver.last is None:
             return False
-        self._solving.stop.set()
-        self._solving = self.share = None
+        self._solver.drop()
+        self.share = None
         self.changed.emit()
         return True
 
     def keep(self) -> None:
         """Make what was carried the take, on its head, as one undo step."""
-        result, target = self.result, self.target
-        if result is None or target.head is None:
+        result, head, take = self.result, self.target.head, self._session.document.take
+        if result is None or head is None:
             return
-        session, head = self._session, target.head
-        take = session.take
-        inputs = {
-            "target": str(target.path or ""),
-            "source": self.capture.take.name if self.capture else take.name,
-            "method": self.method,
-            "labels": {str(frame): dict(pose) for frame, pose in target.labels.items()},
-            "places": dict(target.places),
-            "reading": target.reading.stored(),
-            "alpha": self.matching.alpha,
-            "beta": self.matching.beta,
-            "closure": self.matching.closure,
-        }
-
-        def work() -> Patch:
-            from engine.editing import Patch
-
-            return Patch.between(take, take.with_weights(result.take.weights), (0, len(take)))
+        asked = self.solved or whole(self.performance, self.target, self.matching, self.method)
 
         def then(patch: Patch) -> None:
-            if session.take is take:
-                self._kept_heads.know(inputs, None if head is bundled() else head)
-                session.undo.push(EditCommand(session, patch, f"carry to {head.name}", kind=KIND, inputs=inputs))
+            if self._session.document.take is take:
+                self._kept_heads.know(asked.stored, None if head is bundled() else head)
+                self._solver.keep(asked, patch)
 
-        self.submit(work, then)
+        self.submit(lambda: result.patch(take), then)
 
-    def show(self, result: Carried | None) -> None:
+    def show(self, result: Retargeted | None, solved: Asked | None = None) -> None:
         """Show what was carried before, or nothing."""
-        self.result = result
+        self.result, self.solved = result, solved
         self.changed.emit()
 
     def drop(self) -> None:
         """Keep nothing of what was carried."""
-        self.result = None
-        self._live_for = ()
+        self.result = self.solved = None
+        self._live.ask_anew()
         self.ask_live()
         self.changed.emit()
 
     def close(self) -> None:
         """Stop what is under way and end the threads."""
-        self._session.undo.indexChanged.disconnect(self._follow)  # clearing itself at its end, it would still tell us
-        self.cancel()
-        self._whole.stop()
-        self._short.stop()
+        # clearing itself at its end, it would still tell us
+        self._session.document.undo.indexChanged.disconnect(self._follow)
+        for part in (self._solver, self._nearby):
+            part.close()
+        for thread in (self._whole, self._short):
+            thread.stop()
 
     # --- within
 
     def _begin_anew(self) -> None:
         """Forget what another source, target or setting came to."""
         self.cancel()
-        self.result, self.draft_pose = None, {}
+        self.result, self.solved, self.draft_pose = None, None, {}
         self.ask_live()
         self.changed.emit()
 
     def _follow(self, *_: int) -> None:
         """Put the take on the head of the last retarget in effect: undone, redone or opened with a project."""
         session = self._session
-        if session.signalsBlocked():
-            return  # a project is being opened; it says so when it is
-        contents = session.contents()
+        if session.document.opening:
+            return  # it says so when it is open
+        contents = session.document.contents()
         kept = [edit for edit in contents.edits[: contents.position] if edit.kind == KIND]
         self._kept_heads.follow(kept[-1].inputs if kept else {})
 
@@ -400,24 +266,29 @@ class Retargeting(QObject):
         errand.then(result)
 
     def _refused(self, request: object, sentence: str, advice: str) -> None:
-        if self.opening and self._opening_head is not None and self._opening_head[0] is not None:
-            self.refused = self._opening_head[0], self._opening_head[1]
-        self._solving, self.share, self.opening, self._opening_head = None, None, "", None
+        self.choosing.give_up()
+        self.failed.emit(sentence, advice)
+        self.changed.emit()
+
+    def _solve_refused(self, sentence: str, advice: str) -> None:
+        self.share = None
         self.failed.emit(sentence, advice)
         self.changed.emit()
 
     def _short_refused(self, request: object, sentence: str, advice: str) -> None:
-        self.told.emit("")
+        self.choosing.told.emit("")
         self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
-            if self.capture is not None and self._session.take is not self.capture.take:
-                self.capture, self._capture_path = None, None
+            if self.capture is not None and self._session.document.take is not self.capture.take:
+                self.capture = None
+                self.choosing.forget_capture()
             self.target, self.suggestions = replace(self.target, labels={}), []
             self._follow()
         if change & (Change.TAKE | Change.CURVES | Change.CHARACTER):
-            self._performance, self.live, self._live_for = None, None, ()
+            self._performance = None
+            self._live.forget()
             self._begin_anew()
         elif change & Change.PLAYHEAD:
             self.draft_pose = {}
@@ -430,7 +301,3 @@ class Retargeting(QObject):
 
 def _run(errand: Errand) -> Any:
     return errand.work()
-
-
-def _nobody(_: float) -> None:
-    pass

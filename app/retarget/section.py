@@ -7,7 +7,8 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QProgressBar, QPushButton,
 
 from app.retarget.labelling import Labelling
 from app.retarget.labels import LabelsBox
-from app.retarget.retargeting import LABELS, MOVEMENT, Retargeting
+from app.retarget.retargeting import Retargeting
+from app.retarget.solving import LABELS, MOVEMENT
 from app.retarget.strengths import StrengthSliders
 from app.session import Session
 from app.widgets.section import Section, quiet
@@ -41,7 +42,7 @@ class RetargetSection(Section):
         self.rest_frame = QSpinBox(maximum=10_000_000)
         self.rest_frame.setKeyboardTracking(False)
         self.rest_frame.setToolTip("A frame of the capture in which the face is at rest")
-        self.rest_frame.valueChanged.connect(retargeting.measure_from)
+        self.rest_frame.valueChanged.connect(retargeting.choosing.measure_from)
         self.target_button, self.folder_button = QPushButton("Head…"), QPushButton("Folder…")
         self.bundled_button = QPushButton("Retake's own head")
         self.target_button.setToolTip("A character file, glTF, GLB or VRM, OBJ, or a packed ICT-FaceKit")
@@ -98,14 +99,20 @@ class RetargetSection(Section):
         """Show the state."""
         state = self._retargeting
         head, capture, labels = state.target.head, state.capture, state.method == LABELS
-        what = f"{capture.take.name}, {counted(len(capture.names), 'marker')}" if capture else self.session.take.name
+        what = (
+            f"{capture.take.name}, {counted(len(capture.names), 'marker')}"
+            if capture
+            else self.session.document.take.name
+        )
         self._source.setText(f"From: {what}" + ("" if capture else f" on {state.performance.head.name}"))
         self._target.setText(
-            f"Opening {state.opening}…" if state.opening else f"To: {head.name if head else 'no head yet'}"
+            f"Opening {state.choosing.opening}…"
+            if state.choosing.opening
+            else f"To: {head.name if head else 'no head yet'}"
         )
         self._rest.setVisible(capture is not None)
         with QSignalBlocker(self.rest_frame):
-            self.rest_frame.setMaximum(max(0, len(self.session.take) - 1))
+            self.rest_frame.setMaximum(max(0, len(self.session.document.take) - 1))
         self.strengths.setVisible(state.ready and not labels)
         for part in (self.labels, self.labels.weights, self.save_button, self.read_button):
             part.setVisible(state.ready and labels)

@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.retarget.carry import Target
-from app.retarget.retargeting import LABELS, Retargeting
+from app.retarget.retargeting import Retargeting
+from app.retarget.solving import LABELS
 from app.session import Session
 from app.session.sides import Dot, Side
 from engine.character import Character, bundled
+from engine.editing import standard_places
 from engine.errors import EditError
-from engine.spacetime.layout import standard
 from engine.take import Array
 from engine.words import counted
 
 if TYPE_CHECKING:
-    from engine.spacetime.source import Source
+    from engine.editing import Source
 
 MARGIN = 0.25  # of a capture's extent, around it
 
@@ -29,9 +30,9 @@ def sides(session: Session, retargeting: Retargeting, chosen: str, *, dots: bool
     `chosen` is the marker that a click on the target places; `dots` are drawn on heads where they are asked for.
     """
     target, head = retargeting.target, retargeting.target.head
-    if session.tool != "retarget" or (head is not None and not retargeting.ready):
+    if session.view.tool != "retarget" or (head is not None and not retargeting.ready):
         return ()
-    frame = session.playhead
+    frame = session.view.playhead
     capture = retargeting.capture
     if capture is not None:
         left = _of_capture(capture, frame, chosen if dots else "")
@@ -54,7 +55,9 @@ def _of_take(session: Session, head: Character, chosen: str, *, dots: bool) -> S
             Dot(name, vertex, number=str(number), chosen=name == chosen)
             for number, (name, vertex) in enumerate(_standard(head), 1)
         )
-    return Side(f"{session.name} · {head.name}", session.frame_weights(session.playhead), head, shown)
+    return Side(
+        f"{session.document.name} · {head.name}", session.document.frame_weights(session.view.playhead), head, shown
+    )
 
 
 def _of_capture(capture: Source, frame: int, chosen: str) -> Side:
@@ -82,7 +85,6 @@ def _box(points: Array) -> tuple[Array, Array]:
 @lru_cache(maxsize=4)
 def _standard(head: Character) -> tuple[tuple[str, int], ...]:
     try:
-        layout = standard(head)
+        return tuple(standard_places(head).items())
     except EditError:
         return ()
-    return tuple(zip(layout.names, layout.vertices.tolist(), strict=True))

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QGridLayout, QSlider, QWidget
 
 from app.widgets.section import quiet, slider
 from app.widgets.text import Label
-from engine.spacetime.matching import Matching
+from engine.editing import Matching
 
 STEPS = 50  # on either side of the middle; the lowest is none at all
 DECADE = 50

@@ -1,28 +1,28 @@
-"""What was changed, one line each, and the verdict."""
+"""What was changed, one line each, and where the take before lies."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
+from typing import Any
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QComboBox, QLineEdit, QListWidget, QListWidgetItem, QPushButton
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QListWidget, QListWidgetItem, QPushButton, QWidget
 
 from app.session import Change, Session
-from app.session.commands import MarkCommand
 from app.theme import GRID
-from app.widgets.section import Section, quiet
+from app.widgets.section import NUMBER_PX, Section, quiet
 from engine.review.changes import Change as Difference
+from engine.review.pairing import alignment_of
 from engine.review.report import REGION_TITLES, clock
 from engine.words import SENTENCE_LENGTH, counted, plain
 
-LIST_PX = 220
-LONGEST = 400  # characters of a verdict's sentence
-VERDICTS = ("No verdict yet", "Approved", "Needs work")
+LIST_PX = 150
 FRAMES = Qt.ItemDataRole.UserRole
+FARTHEST_FRAMES = 1_000_000.0
 
 
 class ReviewSection(Section):
-    """Lists the changes, goes to the one that is clicked, and keeps the verdict in the project.
+    """Lists the changes, goes to the one that is clicked, and lets the take before be moved in time.
 
     Parameters
     ----------
@@ -31,6 +31,7 @@ class ReviewSection(Section):
 
     tools = frozenset({"review"})
     wanted = Signal(str)  # the name of an action
+    moved = Signal(float)  # seconds at which the take before shall lie
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "Changes")
@@ -45,21 +46,33 @@ class ReviewSection(Section):
         self.list.itemActivated.connect(self._go_to)
         self.list.itemClicked.connect(self._go_to)
         self.column.addWidget(self.list)
-        self.side_by_side(self._button("Previous", "previous_change"), self._button("Next", "next_change"))
-        self.verdict = QComboBox()
-        self.verdict.addItems(VERDICTS)
-        self.row("Verdict", self.verdict)
-        self.sentence = QLineEdit()
-        self.sentence.setPlaceholderText("Why, then Enter")
-        self.sentence.setMaxLength(LONGEST)
-        self.sentence.setAccessibleName("Why this verdict")
-        self.column.addWidget(self.sentence)
-        self.verdict.activated.connect(self._judge)
-        self.sentence.returnPressed.connect(self._judge)
-        self.column.addWidget(self._button("Write a report…", "write_report"))
+        self.side_by_side(
+            self._button("Previous", "previous_change"),
+            self._button("Loop", "loop_change"),
+            self._button("Next", "next_change"),
+        )
+        self._lay_out_offset()
         self.column.addWidget(self._button("Compare with another take…", "compare_take"))
         session.changed.connect(self._on_change)
-        self._show_verdict()
+
+    def _lay_out_offset(self) -> None:
+        self.alignment, self.offset = quiet(""), QDoubleSpinBox()
+        self.offset.setRange(-FARTHEST_FRAMES, FARTHEST_FRAMES)
+        self.offset.setDecimals(2)
+        self.offset.setSuffix(" frames")
+        self.offset.setKeyboardTracking(False)
+        self.offset.setToolTip("How much later the take before is than the one after, in frames of the one after")
+        self.offset.valueChanged.connect(lambda frames: self.moved.emit(frames / self.session.document.take.fps))
+        self.column.addWidget(self.alignment)
+        self._offset_row = QWidget()
+        row = QHBoxLayout(self._offset_row)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(quiet("Offset"), 1)
+        row.addWidget(self.offset)
+        self.offset.setAccessibleName("Offset")
+        self.offset.setFixedWidth(NUMBER_PX + 24)
+        self.column.addWidget(self._offset_row)
+        self.show_pair(None)
 
     def _button(self, title: str, action: str) -> QPushButton:
         button = QPushButton(title)
@@ -71,9 +84,29 @@ class ReviewSection(Section):
         """What was changed, in order of time."""
         return self._changes
 
+    @property
+    def here(self) -> Difference | None:
+        """The change at the playhead, or else the first after it, or the last of all."""
+        frame = self.session.view.playhead
+        later = [change for change in self._changes if change.stop > frame]
+        return later[0] if later else self._changes[-1] if self._changes else None
+
+    def show_pair(self, told: Mapping[str, Any] | None) -> None:
+        """Show how two takes were brought together; None where there is no second one."""
+        for widget in (self.alignment, self._offset_row):
+            widget.setVisible(told is not None)
+        if told is None:
+            return
+        alignment = alignment_of(told)
+        alike = f" Both move alike by {alignment.correlation:.2f}." if told.get("by") != "offset" else ""
+        name = plain(str(told.get("name", "")), longest=SENTENCE_LENGTH)
+        self.alignment.setText(f"Before: {name}, {alignment.sentence}.{alike}")
+        with QSignalBlocker(self.offset):
+            self.offset.setValue(alignment.offset_s * self.session.document.take.fps)
+
     def show_changes(self, changes: tuple[Difference, ...]) -> None:
         """List these changes; the chosen line stays where it still is."""
-        fps = self.session.take.fps
+        fps = self.session.document.take.fps
         self._changes = changes
         row = self.list.currentRow()
         self.list.clear()
@@ -90,14 +123,14 @@ class ReviewSection(Section):
             self.list.setCurrentRow(row)
         differ = sum(change.stop - change.start for change in changes)
         self.summary.setText(
-            f"{counted(len(changes), 'change')} over {differ:,} of {counted(len(self.session.take), 'frame')}."
+            f"{counted(len(changes), 'change')} over {differ:,} of {counted(len(self.session.document.take), 'frame')}."
             if changes
             else "Nothing differs from the recording. Edit the take, or compare it with another one."
         )
 
     def step(self, by: int) -> None:
         """Go to the next change after the playhead, or to the one before it."""
-        here = self.session.playhead
+        here = self.session.view.playhead
         peaks = [change.peak for change in self._changes]
         later = [index for index, peak in enumerate(peaks) if peak > here]
         earlier = [index for index, peak in enumerate(peaks) if peak < here]
@@ -106,38 +139,16 @@ class ReviewSection(Section):
         elif by < 0 and earlier:
             self._choose(earlier[-1])
 
-    def judge(self, index: int) -> None:
-        """Give one of the verdicts, with the sentence that is typed; one undo step."""
-        self.verdict.setCurrentIndex(index)
-        self._judge()
-
     def _choose(self, index: int) -> None:
         self.list.setCurrentRow(index)
         self._go_to(self.list.item(index))
 
     def _go_to(self, item: QListWidgetItem) -> None:
         start, stop, peak = item.data(FRAMES)
-        self.session.select((start, stop))
-        self.session.move_playhead(peak)
-
-    def _judge(self, *_: object) -> None:
-        chosen = self.verdict.currentIndex()
-        why = self.sentence.text().strip()
-        verdict = "" if chosen == 0 else f"{VERDICTS[chosen]}: {why}" if why else VERDICTS[chosen]
-        marks = self.session.marks
-        if verdict != marks.verdict:
-            title = "take back the verdict" if chosen == 0 else f"judge: {VERDICTS[chosen].lower()}"
-            self.session.undo.push(MarkCommand(self.session, replace(marks, verdict=verdict), title))
+        self.session.view.select((start, stop))
+        self.session.view.move_playhead(peak)
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
             self.show_changes(())
             self.summary.setText("Comparing…")
-        if change & (Change.TAKE | Change.MARKS):
-            self._show_verdict()
-
-    def _show_verdict(self) -> None:
-        verdict = self.session.marks.verdict
-        title, _, why = verdict.partition(": ")
-        self.verdict.setCurrentIndex(VERDICTS.index(title) if title in VERDICTS else 0)
-        self.sentence.setText(why)

@@ -11,10 +11,11 @@ from pathlib import Path
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
 
 from app.background import LatestWins
+from app.session.changes import Change
 from app.session.keeping import Kept, Look, Saving, as_unsaved_work
 from app.session.left_over import LeftOver, new_path, unsaved_folder, unsaved_work
 from app.session.opening import Opened
-from app.session.session import Change, Session
+from app.session.session import Session
 from engine import project
 from engine.errors import EngineError
 from engine.project import Contents, DisplacedError, Project
@@ -49,19 +50,18 @@ class Keeper(QObject):
         super().__init__()
         self._session, self.folder = session, folder or unsaved_folder()
         self._kept: Kept | None = None
-        self._newest = session.contents()  # what is to be written
+        self._newest = session.document.contents()  # what is to be written
         self._wished: Saving | None = None
         self._stopped = False
         self._waits: Contents | None = None  # steps that could not be kept while a copy was made
         self._afterwards: list[Callable[[], None]] = []
-        self._opening = False
         self._told = ""
         self._lock = threading.Lock()
         self._work = LatestWins(self._write, name="keeper")
         self._work.done.connect(self._written)
         self._work.failed.connect(self._refused)
         self._work.rested.connect(self._go_on)
-        session.undo.indexChanged.connect(self._keep)
+        session.document.undo.indexChanged.connect(self._keep)
         session.changed.connect(self._on_change)
         self._displaced.connect(self._on_displaced)
         self._looks = QTimer(self, interval=LOOK_MS)
@@ -104,7 +104,7 @@ class Keeper(QObject):
         left_over = opened.wish.left_over
         self._adopt(opened, None if left_over else opened.wish.path, saved=not left_over)
         if left_over:
-            self._session.undo.resetClean()
+            self._session.document.undo.resetClean()
 
     def release(self) -> None:
         """Let go of the project, so that it can be read anew; what is open is in memory alone until `keep` or `open`."""
@@ -120,7 +120,7 @@ class Keeper(QObject):
         Returns at once; `saved` or `failed` follows. Where it fails nothing is lost: neither what was at the path, nor
         the work.
         """
-        self._newest, self._wished, self._stopped = self._session.contents(), Saving(path), False
+        self._newest, self._wished, self._stopped = self._session.document.contents(), Saving(path), False
         self._work.submit(self._wished, "save")
         self.saving_changed.emit()
 
@@ -130,8 +130,8 @@ class Keeper(QObject):
 
     def keep(self) -> None:
         """Write what is open even where nothing was edited: a recording exists nowhere else."""
-        self._session.undo.resetClean()
-        self._submit(self._session.contents())
+        self._session.document.undo.resetClean()
+        self._submit(self._session.document.contents())
 
     def forget(self) -> None:
         """Remove the unsaved work, after it was exported or discarded; a saved project stays as it is."""
@@ -139,7 +139,7 @@ class Keeper(QObject):
 
     def close(self) -> None:
         """Finish writing and end the thread; unsaved work that was not forgotten is offered at the next start."""
-        self._session.undo.indexChanged.disconnect(self._keep)
+        self._session.document.undo.indexChanged.disconnect(self._keep)
         self._session.changed.disconnect(self._on_change)
         self._detach(delete=False)
         self._work.stop()
@@ -157,20 +157,17 @@ class Keeper(QObject):
     # --- within
 
     def _keep(self, _: int = 0) -> None:
-        stored = self._project and self._project.contents
-        if self._opening or (stored and stored.original is not self._session.recorded):
-            return  # another take is being opened
-        if stored and stored.edits and self._session.undo.count() == 0:
-            return  # only opening empties the stack: undoing leaves its steps there
-        contents = self._session.contents()
-        if stored or contents.edits:
+        if self._session.document.opening:
+            return  # what opening does to the stack is no work of the user's
+        contents = self._session.document.contents()
+        if self._project or contents.edits:
             self._submit(contents)
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.TAKE and not self._opening:
+        if change & Change.TAKE:
             self._detach(delete=False)
-        elif change & Change.MARKS and not self._opening:
-            contents = self._session.contents()
+        elif change & Change.MARKS:
+            contents = self._session.document.contents()
             if self._project or contents.edits:  # what a take brings with it is no work of the user's
                 self._submit(contents)
 
@@ -218,7 +215,7 @@ class Keeper(QObject):
         self._displaced.emit(error)
 
     def _on_displaced(self, error: DisplacedError) -> None:
-        self._session.undo.resetClean()
+        self._session.document.undo.resetClean()
         if self._wished is None:  # else the save tells it
             self.failed.emit(error.sentence, error.advice)
 
@@ -238,16 +235,16 @@ class Keeper(QObject):
         if wanted is self._wished:
             self._end_saving()
         if result is self._project:  # else another take was opened meanwhile
-            self._session.path = result.path
+            self._session.document.path = result.path
             self._looks.start()
             self._show_clean(result.contents)
             self.saved.emit(result.path)
 
     def _show_clean(self, safe: Contents) -> None:
-        now = self._session.contents()
+        now = self._session.document.contents()
         latest = (now.edits, now.position, now.marks) == (safe.edits, safe.position, safe.marks)
         if self.path and latest and now.original is safe.original:
-            self._session.undo.setClean()
+            self._session.document.undo.setClean()
 
     def _refused(self, wanted: Contents | Saving | Look, sentence: str, advice: str) -> None:
         asked_for = isinstance(wanted, Saving)
@@ -272,11 +269,7 @@ class Keeper(QObject):
     def _adopt(self, opened: Opened, path: Path | None, *, saved: bool) -> None:
         assert opened.project is not None and opened.state is not None
         self._detach(delete=False)
-        self._opening = True
-        try:
-            self._session.restore(opened.project.contents, path, opened.steps, opened.state, opened.measured)
-        finally:
-            self._opening = False
+        self._session.restore(opened.project.contents, path, opened.steps, opened.state, opened.measured)
         if not opened.project.read_only:
             self._kept = Kept(opened.project, saved)
             self._secure(self._kept)

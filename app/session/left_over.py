@@ -14,9 +14,9 @@ import platformdirs
 from app.settings import NAME
 from engine import project
 from engine.errors import EngineError
-from engine.formats.atomic import sweep
-from engine.formats.lock import FileLock
-from engine.formats.unfinished import UNFINISHED
+from engine.formats.base.atomic import sweep
+from engine.formats.base.lock import FileLock
+from engine.formats.base.unfinished import UNFINISHED
 from engine.live.spool import recovered
 from engine.project import Contents
 from engine.take import timecode

@@ -14,9 +14,10 @@ from app.session.commands import restored
 from app.session.session import Session
 from engine.errors import EngineError
 from engine.extended import bundled_face
-from engine.formats import livelink_folder, read_take
-from engine.formats.atomic import sweep
-from engine.formats.importing import Imported, imported
+from engine.formats import read_take
+from engine.formats.base.atomic import sweep
+from engine.formats.livelink import folder as livelink_folder
+from engine.formats.livelink.importing import Imported, imported
 from engine.project import ENDING, InUseError, Project, Replayed, replay
 from engine.take import Array, Take
 
@@ -89,7 +90,7 @@ def opened(session: Session, wish: Wish, report: Callable[[float], None] = lambd
         contents = project.contents
         state = replay(contents)
         measured = _measured(state.original or contents.original), _measured(state.take)
-        steps = tuple(restored(session, contents, state))
+        steps = tuple(restored(session.document, contents, state))
         report(1.0)
     except BaseException:
         project.close()

@@ -9,15 +9,15 @@ SLACK_S = 0.05  # a difference that nobody hears
 
 def beyond_the_take(session: Session) -> str:
     """Return what of the sound lies before the take's first frame or after its last; empty where nothing does."""
-    if session.audio is None:
+    if session.document.audio is None:
         return ""
-    begins_s = session.offset_s("audio")
-    before_s, after_s = -begins_s, begins_s + session.audio.duration_s - session.take.duration_s
+    begins_s = session.document.offset_s("audio")
+    before_s, after_s = -begins_s, begins_s + session.document.audio.duration_s - session.document.take.duration_s
     said = []
     if before_s > SLACK_S:
-        said.append(f"begins {_seconds(min(before_s, session.audio.duration_s))} before the take")
+        said.append(f"begins {_seconds(min(before_s, session.document.audio.duration_s))} before the take")
     if after_s > SLACK_S:
-        said.append(f"goes on {_seconds(min(after_s, session.audio.duration_s))} after the take's end")
+        said.append(f"goes on {_seconds(min(after_s, session.document.audio.duration_s))} after the take's end")
     return f"The sound {' and '.join(said)}; that is not heard." if said else ""
 
 

@@ -7,33 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from PySide6.QtGui import QUndoCommand
 
+from app.session.asked import Base
 from app.session.session import Session
-from engine.take import Array, Take
+from engine.editing import DragRequest
+from engine.take import Array
 
-
-@dataclass(frozen=True, eq=False)
-class Wish:
-    """What is asked of a take, from frame `start`.
-
-    Attributes
-    ----------
-    take, controls : what it is asked of, (frames, 16) measured on it
-    held : (frames, 16) what edits below asked for, NaN where nothing
-    asked : (n, 16) NaN where nothing is asked
-    believability : of the edit
-    """
-
-    take: Take
-    controls: Array
-    held: Array
-    start: int
-    asked: Array
-    believability: float
-
-    @property
-    def stop(self) -> int:
-        """The frame after the last."""
-        return self.start + len(self.asked)
+Wish = tuple[Base, DragRequest]
 
 
 @dataclass
@@ -46,39 +25,45 @@ class Wishes:
     """
 
     session: Session
-    _made: list[tuple[QUndoCommand, Wish]] = field(default_factory=list)
+    _kept: list[tuple[QUndoCommand, Wish]] = field(default_factory=list)
 
     def asking(self, start: int, asked: Array) -> Wish:
         """Return the wish for curves, (n, 16) from frame `start`, together with those of the drags it overlaps."""
-        session = self.session
-        rows = slice(start, start + len(asked))
-        new = np.where(asked == session.controls[rows], np.nan, asked)
+        document, believability = self.session.document, self.session.view.believability
+        new = np.where(asked == document.controls[start : start + len(asked)], np.nan, asked)
+        alone = Base.of(document), DragRequest(start, new, believability)
         below = self._of_the_last_step()
-        if below is None or below.believability != session.believability:
-            return Wish(session.take, session.controls, session.asked, start, new, session.believability)
-        if not (below.start < start + len(new) and start < below.stop):
-            return Wish(session.take, session.controls, session.asked, start, new, session.believability)
-        first, last = min(start, below.start), max(start + len(new), below.stop)
-        both = np.full((last - first, new.shape[1]), np.nan)
-        both[below.start - first : below.stop - first] = below.asked
-        part = both[start - first : start - first + len(new)]
+        if below is None or below[1].believability != believability:
+            return alone
+        base, wish = below
+        stop, (_, last) = start + len(new), wish.frames
+        if not (wish.start < stop and start < last):
+            return alone
+        first, last = min(start, wish.start), max(stop, last)
+        both = _padded(wish.asked, wish.start - first, last - first)
+        part = both[start - first : stop - first]
         part[...] = np.where(np.isnan(new), part, new)
-        return Wish(below.take, below.controls, below.held, first, both, below.believability)
+        return base, DragRequest(first, both, believability)
 
-    def made(self, step: QUndoCommand, wish: Wish, *, start: int, stop: int) -> None:
+    def kept(self, step: QUndoCommand, base: Base, wish: DragRequest, *, start: int, stop: int) -> None:
         """Remember the step that a wish became, which moved the frames [start, stop)."""
-        self._made = [(other, known) for other, known in self._made if known.take is wish.take]
-        first, last = min(start, wish.start), max(stop, wish.stop)
-        asked = np.full((last - first, wish.asked.shape[1]), np.nan)
-        asked[wish.start - first : wish.stop - first] = wish.asked
-        whole = Wish(wish.take, wish.controls, wish.held, first, asked, wish.believability)
-        self._made.append((step, whole))
+        self._kept = [(other, known) for other, known in self._kept if known[0].take is base.take]
+        first, last = min(start, wish.start), max(stop, wish.frames[1])
+        asked = _padded(wish.asked, wish.start - first, last - first)
+        self._kept.append((step, (base, DragRequest(first, asked, wish.believability))))
 
     def forget(self) -> None:
         """Drop all of them: another take was opened."""
-        self._made = []
+        self._kept = []
 
     def _of_the_last_step(self) -> Wish | None:
-        undo = self.session.undo
+        undo = self.session.document.undo
         last = undo.command(undo.index() - 1) if undo.index() else None
-        return next((wish for step, wish in self._made if step is last), None)
+        return next((wish for step, wish in self._kept if step is last), None)
+
+
+def _padded(asked: Array, at: int, length: int) -> Array:
+    """Return curves, (n, 16), as (length, 16) from row `at`, NaN around them."""
+    padded = np.full((length, asked.shape[1]), np.nan)
+    padded[at : at + len(asked)] = asked
+    return padded

@@ -24,9 +24,9 @@ from app.spans.filling import Filling
 from app.spans.strip import Strip
 from app.widgets.section import CountBox, Section, empty, quiet
 from app.widgets.text import caption
+from engine.editing import FillRequest, Style
 from engine.errors import EngineError
 from engine.formats import read_take
-from engine.inpaint.request import Style
 from engine.project import Span
 from engine.take import Take, timecode
 from engine.words import counted
@@ -52,6 +52,7 @@ class SpansSection(Section):
     filling : makes the variants
     """
 
+    away = frozenset({"review"})
     refused = Signal(str, str)
     menu_wanted = Signal(QPoint)  # on the screen, after the span was chosen
 
@@ -138,14 +139,14 @@ class SpansSection(Section):
     @property
     def chosen(self) -> Span | None:
         """The span that is selected, if any."""
-        for span in self.session.marks.spans:
-            if (span.start, span.stop) == self.session.selection:
+        for span in self.session.document.marks.spans:
+            if (span.start, span.stop) == self.session.view.selection:
                 return span
         return None
 
     def mark(self) -> None:
         """Make the selection a span."""
-        selection, marks = self.session.selection, self.session.marks
+        selection, marks = self.session.view.selection, self.session.document.marks
         if selection is None or self.chosen is not None:
             return
         for other in marks.spans:  # one that was lost may lie within: it is often filled with some frames around it
@@ -154,40 +155,49 @@ class SpansSection(Section):
                 self.refused.emit(f"{where} are marked already.", "Unmark them, or mark frames beside them.")
                 return
         spans = sorted((*marks.spans, Span(*selection)), key=lambda span: span.start)
-        self.session.undo.push(MarkCommand(self.session, replace(marks, spans=tuple(spans)), "mark a span"))
+        self.session.document.undo.push(
+            MarkCommand.of(self.session.document, replace(marks, spans=tuple(spans)), "mark a span")
+        )
 
     def unmark(self) -> None:
         """Remove the chosen span; its frames stay as they are."""
-        chosen, marks = self.chosen, self.session.marks
+        chosen, marks = self.chosen, self.session.document.marks
         if chosen is not None:
             rest = tuple(span for span in marks.spans if span != chosen)
-            self.session.undo.push(MarkCommand(self.session, replace(marks, spans=rest), "unmark a span"))
+            self.session.document.undo.push(
+                MarkCommand.of(self.session.document, replace(marks, spans=rest), "unmark a span")
+            )
 
     def fill(self) -> None:
         """Fill the chosen span, or the selection."""
-        span = self.chosen or (Span(*self.session.selection) if self.session.selection else None)
-        spans = self.session.marks.spans
+        span = self.chosen or (Span(*self.session.view.selection) if self.session.view.selection else None)
+        spans = self.session.document.marks.spans
         if span is None and len(spans) == 1:  # there is only one that can be meant
             self._go_to(span := spans[0])
         if span is None:
             self.refused.emit("No span is chosen.", "Click one in the spans lane, or drag there to mark one.")
             return
-        style = STYLES[self.style_box.currentText()]
-        self._filling.start(
-            span,
-            style=style,
+        how = FillRequest(
+            (span.start, span.stop),
+            style=STYLES[self.style_box.currentText()],
             guide=self._guide,
             guide_offset=self.guide_shift.value(),
+        )
+        self._filling.start(
+            span,
+            how,
             keep_curves=self.curves.isChecked(),
             keep_visemes=self.visemes.isChecked(),
         )
 
     def _set_region(self, _: int) -> None:
-        chosen, marks = self.chosen, self.session.marks
+        chosen, marks = self.chosen, self.session.document.marks
         if chosen is not None:
             changed = replace(chosen, region=REGIONS[self.region.currentText()])
             spans = tuple(changed if span == chosen else span for span in marks.spans)
-            self.session.undo.push(MarkCommand(self.session, replace(marks, spans=spans), "choose a region"))
+            self.session.document.undo.push(
+                MarkCommand.of(self.session.document, replace(marks, spans=spans), "choose a region")
+            )
 
     def _choose_guide(self) -> None:
         name, _ = QFileDialog.getOpenFileName(self, "A take to follow", "", "Takes (*.csv)")
@@ -214,8 +224,8 @@ class SpansSection(Section):
 
     def _show_list(self) -> None:
         empty(self._list)
-        spans, fps, chosen = self.session.marks.spans, self.session.take.fps, self.chosen
-        to_do = set(self.session.open_spans)
+        spans, fps, chosen = self.session.document.marks.spans, self.session.document.take.fps, self.chosen
+        to_do = set(self.session.document.open_spans)
         for span in spans[:SHOWN_SPANS]:
             kind = "marked" if span.kind != "lost" else "lost" if span in to_do else "filled"
             length = counted(span.stop - span.start, "frame")
@@ -238,8 +248,8 @@ class SpansSection(Section):
         self.menu_wanted.emit(where)
 
     def _go_to(self, span: Span) -> None:
-        self.session.select((span.start, span.stop))
-        self.session.move_playhead(span.start)
+        self.session.view.select((span.start, span.stop))
+        self.session.view.move_playhead(span.start)
 
     def _show(self) -> None:
         chosen, filling = self.chosen, self._filling
@@ -257,7 +267,7 @@ class SpansSection(Section):
             names = {region: title for title, region in REGIONS.items()}
             with QSignalBlocker(self.region):
                 self.region.setCurrentText(names.get(chosen.region, next(iter(REGIONS))))
-            pins = sum(chosen.start <= pin.frame < chosen.stop for pin in self.session.marks.pins)
+            pins = sum(chosen.start <= pin.frame < chosen.stop for pin in self.session.document.marks.pins)
             self.note.setText(f"{counted(pins, 'pin')} inside will be met exactly." if pins else "")
             self.note.setVisible(bool(pins))
 

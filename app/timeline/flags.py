@@ -32,7 +32,12 @@ class Mark:
 
 
 class FlagLane:
-    """Draws the flags of a view and finds the one under the pointer."""
+    """Draws the flags of a view.
+
+    Attributes
+    ----------
+    marks : what was drawn last
+    """
 
     def __init__(self) -> None:
         self._flags: tuple[Flag, ...] | None = None
@@ -59,11 +64,6 @@ class FlagLane:
         for mark in self.marks:
             _draw(painter, mark, box, per_frame, colours)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
-
-    def at(self, x: float) -> Mark | None:
-        """Return the mark under the pointer."""
-        near = [mark for mark in self.marks if abs(mark.x - x) <= APART_PX / 2 + 1]
-        return min(near, key=lambda mark: abs(mark.x - x), default=None)
 
     def _learn(self, flags: tuple[Flag, ...] | None) -> None:
         if flags is not self._flags:

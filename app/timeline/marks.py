@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter
+from PySide6.QtGui import QColor, QPainter, QPen
 
 from app.theme import Palette
 from engine.project import Marks, Note, Pin
@@ -14,7 +14,7 @@ from engine.words import NAME_LENGTH, plain
 
 LANE_PX = 18
 APART_PX = 4  # a mark that is nearer to the one before is not drawn
-NEAR_PX = 8  # how far beside a mark it may be clicked
+NOTE_LANE = 4  # of the theme's colours
 NOTE_PX = 220  # what a note's text may take
 
 
@@ -23,19 +23,12 @@ def lanes(marks: Marks) -> list[str]:
     return [name for name, shown in (("pins", marks.pins), ("notes", marks.notes)) if shown]
 
 
-def nearest_mark(marks: Marks, name: str, frame: float, within: float) -> Note | Pin | None:
-    """Return the pin or note, by the name of its lane, that lies nearest to a frame and no further than `within` frames."""
-    listed: Sequence[Note | Pin] = marks.pins if name == "pins" else marks.notes if name == "notes" else ()
-    near = [mark for mark in listed if abs(mark.frame - frame) <= within]
-    return min(near, key=lambda mark: abs(mark.frame - frame), default=None)
-
-
 def draw_marks(
     painter: QPainter, marks: Marks, name: str, place: tuple[QRectF, tuple[float, float]], colours: Palette
 ) -> None:
     """Draw one of `lanes` in its place: a box, and the view whose first and last frame are the box's edges.
 
-    A pin is a diamond with its range, a note a dot with its text.
+    A pin is a diamond with its range, a note a dot with its range and its text, hollow once it is resolved.
     """
     box, view = place
     per_frame = box.width() / max(1e-9, view[1] - view[0])
@@ -82,12 +75,19 @@ def _draw_notes(
     y, (first, per_frame) = box.center().y(), scale
     places = box.left() + (np.array([note.frame for note in notes], float) - first) * per_frame
     shown = list(_apart(places, box))
-    painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(QColor(colours.good))
-    for _, x in shown:
+    colour = QColor(colours.lanes[NOTE_LANE])
+    ends = places + (np.array([note.frames - 1 for note in notes], float)) * per_frame
+    long = [index for index in _in_sight(places, ends, box).tolist() if ends[index] > places[index]]
+    painter.setPen(QPen(colour, 1.5))
+    for index in long:
+        foot = box.bottom() - 2.5
+        painter.drawLine(QPointF(places[index], foot), QPointF(ends[index], foot))
+        painter.drawLine(QPointF(ends[index], foot), QPointF(ends[index], foot - 5))
+    for index, x in shown:
+        painter.setBrush(QColor(colours.panel) if notes[index].resolved else colour)
         painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
-    painter.setPen(QColor(colours.text))
     for (index, x), following in zip(shown, [*(x for _, x in shown[1:]), np.inf], strict=True):
+        painter.setPen(QColor(colours.quiet if notes[index].resolved else colours.text))
         room = min(NOTE_PX, following - x - 14)
         if room > 24:
             text = painter.fontMetrics().elidedText(

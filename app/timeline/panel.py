@@ -1,8 +1,8 @@
-"""The ruler and the lanes of sound, visemes, spans, flags and marks above the curves, and the scroll bar beneath."""
+"""The ruler and the lanes of sound, visemes, spans, flags and marks above the curves."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPoint, QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
@@ -12,29 +12,28 @@ from PySide6.QtGui import (
     QPen,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QScrollBar, QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.session import Change, Session
 from app.theme import GRID, Palette
 from app.timeline.flags import FLAGS_PX, FlagLane
-from app.timeline.marks import LANE_PX, NEAR_PX, draw_marks, draw_ranges, lanes, nearest_mark
+from app.timeline.hits import Grip, Hit, Layout, hit
+from app.timeline.marks import LANE_PX, draw_marks, draw_ranges, lanes
+from app.timeline.ruler import draw_ticks
 from app.timeline.spans import SpanLane
 from app.timeline.viseme_editing import VisemeEditing
 from app.timeline.visemes import VISEMES_PX, Place
 from app.timeline.waveform import draw_waveform
 from app.widgets.text import tip
-from engine.project import Note, Pin
-from engine.take import timecode
+from engine.project import Note
 
-RULER_PX, AUDIO_PX, SPANS_PX, LABEL_PX = 26, 35, 22, 84
+RULER_PX, AUDIO_PX, SPANS_PX = 26, 35, 22
 SCROLL_PX = 10  # the lanes' scroll bar, which is always there so that frames stay under their ticks
 SLACK_PX = 3  # a press that moves no farther is a click
-STEPS_FRAMES = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
 LAYOUT = (
     Change.TAKE | Change.MEDIA | Change.MARKS | Change.VISEMES | Change.REVIEW
 )  # what may bring lanes or take them away
 SHOWN = LAYOUT | Change.CURVES | Change.FLAGS | Change.VIEW | Change.PLAYHEAD | Change.SELECTION
-STEPS_S = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 HINTS = {
     "": "Hours, minutes, seconds and frames. Drag to scrub, Shift-drag selects, the wheel zooms.",
     "audio": "Drag to move the sound against the face.",
@@ -89,7 +88,7 @@ class Timeline(QWidget):
 
     def sizeHint(self) -> QSize:
         """As high as its lanes."""
-        return QSize(400, round(max(box.bottom() for box in self._lanes().values())))
+        return QSize(400, round(self._layout().height_px))
 
     def _on_change(self, change: Change) -> None:
         if change & LAYOUT:
@@ -99,75 +98,71 @@ class Timeline(QWidget):
 
     # --- geometry
 
-    def _lanes(self) -> dict[str, QRectF]:
-        """Return the lanes that are there, from top to bottom, each with its box right of the gutter."""
-        session = self._session
-        heights = {"audio": AUDIO_PX} if session.audio is not None else {}
-        if session.visemes is not None:
+    def _layout(self) -> Layout:
+        """Return the lanes that are there, from top to bottom, and where each is."""
+        document = self._session.document
+        heights = {"audio": AUDIO_PX} if document.audio is not None else {}
+        if document.visemes is not None:
             heights["visemes"] = VISEMES_PX
         heights |= {"spans": SPANS_PX, "flags": FLAGS_PX}
-        if session.differences is not None:
+        if document.differences is not None:
             heights["changes"] = LANE_PX
-        heights |= dict.fromkeys(lanes(session.marks), LANE_PX)
-        boxes, top = {}, float(RULER_PX)
-        for name, height in heights.items():
-            boxes[name] = QRectF(self._gutter, top, self._span_px(), height)
-            top += height
-        return boxes
+        heights |= dict.fromkeys(lanes(document.marks), LANE_PX)
+        width = max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
+        return Layout(self._gutter, width, self._session.view.range, RULER_PX, tuple(heights.items()))
+
+    def _lanes(self) -> dict[str, QRectF]:
+        """Return the box of each lane, right of the gutter."""
+        layout = self._layout()
+        return {
+            name: QRectF(layout.left_px, top, layout.width_px, bottom - top)
+            for name, (top, bottom) in layout.rows().items()
+        }
 
     def lane_box(self, name: str) -> QRectF:
         """Return where a lane is; an empty box for one that is not there."""
         return self._lanes().get(name, QRectF())
 
-    def _lane_at(self, y: float) -> str:
-        return next((name for name, box in self._lanes().items() if box.top() < y <= box.bottom()), "")
+    def _hit(self, place: QPointF) -> Hit:
+        marks = self._session.document.marks
+        return hit(self._layout(), marks, self._flags.marks, x=place.x(), y=place.y())
 
     def _viseme_place(self) -> Place:
-        first, last = self._session.view
-        fps = self._session.take.fps
+        first, last = self._session.view.range
+        fps = self._session.document.take.fps
         return self.lane_box("visemes").adjusted(0, 3, 0, -3), (first / fps, last / fps)
-
-    def _near(self, lane: str, x: float) -> Note | Pin | None:
-        """Return the pin or note of a lane at a place in the widget."""
-        within = self.frame_at(x + NEAR_PX) - self.frame_at(x)
-        return nearest_mark(self._session.marks, lane, self.frame_at(x), within)
-
-    def _span_px(self) -> float:
-        return max(1.0, self.width() - self._gutter - GRID - SCROLL_PX)
 
     def x_of(self, frame: float) -> float:
         """Return the position of a frame in the widget."""
-        first, last = self._session.view
-        return self._gutter + (frame - first) / max(1e-9, last - first) * self._span_px()
+        return self._layout().x_of(frame)
 
     def frame_at(self, x: float) -> float:
         """Return the fractional frame at a position in the widget."""
-        first, last = self._session.view
-        return first + (x - self._gutter) / self._span_px() * (last - first)
+        return self._layout().frame_at(x)
 
     # --- drawing
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the ruler, every lane, the selection and the playhead."""
-        painter, boxes = QPainter(self), self._lanes()
+        painter, boxes, layout = QPainter(self), self._lanes(), self._layout()
         painter.setPen(QColor(self._colours.quiet))
         left = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
         unit = "frame" if self.in_frames else "h : min : s : frame"
         painter.drawText(QRectF(GRID, 4, self._gutter, 14), left, unit)
         for name, box in boxes.items():
             painter.drawText(QRectF(GRID, box.top(), self._gutter, box.height()), left, name)
-        painter.setClipRect(QRectF(self._gutter, 0, self._span_px(), self.height()))
+        painter.setClipRect(QRectF(self._gutter, 0, layout.width_px, self.height()))
         self._draw_selection(painter)
-        self._draw_ticks(painter)
-        self._draw_audio(painter)
+        draw_ticks(painter, layout, self._session.document.take.fps, self._colours, in_frames=self.in_frames)
+        self._draw_audio(painter, layout)
         self.visemes.draw(painter, self._colours)
-        marks, view = self._session.marks, self._session.view
-        self._spans.draw(painter, self._session.open_spans, boxes["spans"], view, self._colours)
-        self._flags.draw(painter, self._session.flags, boxes["flags"], view, self._colours)
-        draw_ranges(painter, self._session.differences or (), (self.lane_box("changes"), view), self._colours)
+        marks, view = self._session.document.marks, self._session.view.range
+        self._spans.draw(painter, self._session.document.open_spans, boxes["spans"], view, self._colours)
+        self._flags.draw(painter, self._session.document.flags, boxes["flags"], view, self._colours)
+        draw_ranges(painter, self._session.document.differences or (), (self.lane_box("changes"), view), self._colours)
         for name in lanes(marks):
             draw_marks(painter, marks, name, (boxes[name], view), self._colours)
-        x = self.x_of(self._session.playhead)
+        x = self.x_of(self._session.view.playhead)
         painter.setPen(QPen(QColor(self._colours.text), 1))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)  # as in the lanes, or the two halves part by a pixel
         painter.drawLine(QPointF(x, 2.0), QPointF(x, self.height()))
@@ -176,7 +171,7 @@ class Timeline(QWidget):
         painter.drawPolygon([QPointF(x - 5, 0), QPointF(x + 5, 0), QPointF(x, 7)])
 
     def _draw_selection(self, painter: QPainter) -> None:
-        chosen = self._session.selection
+        chosen = self._session.view.selection
         if chosen is None:
             return
         left, right = self.x_of(chosen[0] - 0.5), self.x_of(chosen[1] - 0.5)
@@ -184,33 +179,14 @@ class Timeline(QWidget):
         tint.setAlphaF(0.25)
         painter.fillRect(QRectF(left, 0, right - left, RULER_PX), tint)
 
-    def _draw_ticks(self, painter: QPainter) -> None:
+    def _draw_audio(self, painter: QPainter, layout: Layout) -> None:
         session = self._session
-        fps = session.take.fps
-        first, last = session.view
-        per_second = self._span_px() / max(1e-9, (last - first) / fps)
-        steps_s = [frames / fps for frames in STEPS_FRAMES] if self.in_frames else STEPS_S
-        step = next((s for s in steps_s if s * per_second >= LABEL_PX), steps_s[-1])
-        index = int(first / fps / step)
-        middle = Qt.AlignmentFlag.AlignCenter
-        while index * step * fps <= last:
-            time_s = index * step
-            x = self.x_of(time_s * fps)
-            painter.setPen(QColor(self._colours.quiet))
-            shown = f"{round(time_s * fps):,}" if self.in_frames else timecode(time_s, fps)
-            half = painter.fontMetrics().horizontalAdvance(shown) / 2
-            if self._gutter <= x - half and x + half <= self._gutter + self._span_px():  # none is cut
-                painter.drawText(QRectF(x - 50, 4, 100, 14), middle, shown)
-            painter.setPen(QColor(self._colours.edge))
-            painter.drawLine(int(x), 20, int(x), RULER_PX)
-            index += 1
-
-    def _draw_audio(self, painter: QPainter) -> None:
-        session = self._session
-        if session.audio is not None:
-            first_s, last_s = (frame / session.take.fps - session.offset_s("audio") for frame in session.view)
-            box = QRectF(self._gutter, RULER_PX + 2, self._span_px(), AUDIO_PX - 4)
-            draw_waveform(painter, session.audio, box, (first_s, last_s), self._colours.quiet)
+        if session.document.audio is not None:
+            first_s, last_s = (
+                frame / session.document.take.fps - session.document.offset_s("audio") for frame in session.view.range
+            )
+            box = QRectF(self._gutter, RULER_PX + 2, layout.width_px, AUDIO_PX - 4)
+            draw_waveform(painter, session.document.audio, box, (first_s, last_s), self._colours.quiet)
 
     # --- the mouse
 
@@ -218,23 +194,19 @@ class Timeline(QWidget):
         """Scrub on the ruler; in a lane take hold of what is there, or begin to mark a span; with Shift select."""
         if event.button() != Qt.MouseButton.LeftButton:
             return
-        x, lane = event.position().x(), self._lane_at(event.position().y())
-        frame = round(self.frame_at(x))
-        if lane == "spans" and (hit := [span for span in self._session.marks.spans if span.start <= frame < span.stop]):
-            self._session.select((hit[0].start, hit[0].stop))
-            self._session.move_playhead(hit[0].start)
-        elif lane == "flags" and (mark := self._flags.at(x)) is not None:
-            self._session.move_playhead(mark.flag.start)
-            self.told.emit(mark.sentence)
-        elif (near := self._near(lane, x)) is not None:
-            self._session.move_playhead(near.frame)
-        elif lane == "spans" or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            self._selecting, self._marking = frame, lane == "spans"
-        elif lane == "audio":
-            self._sliding = event.position().x(), self._session.offset_s("audio")
-        elif lane != "visemes" or not self.visemes.take(x):
-            self._scrubbing = True
-            self._session.move_playhead(frame)
+        x, under, view = event.position().x(), self._hit(event.position()), self._session.view
+        grip = under.grip(selects=bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
+        if grip is Grip.RANGE:
+            self._selecting, self._marking = under.frame, under.lane == "spans"
+        elif grip is Grip.SOUND:
+            self._sliding = x, self._session.document.offset_s("audio")
+        elif grip is not Grip.VISEME or not self.visemes.take(x):
+            if under.span is not None:
+                view.select((under.span.start, under.span.stop))
+            view.move_playhead(under.goes_to)
+            self._scrubbing = grip in (Grip.PLAYHEAD, Grip.VISEME)
+            if under.flag is not None:
+                self.told.emit(under.flag.sentence)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Go on with what the press began; show by the pointer what a press would take hold of."""
@@ -243,9 +215,9 @@ class Timeline(QWidget):
             self.visemes.move(event.position().x())
         elif self._selecting is not None:
             first, last = sorted((self._selecting, frame))
-            self._session.select((first, last + 1))
+            self._session.view.select((first, last + 1))
         elif self._scrubbing:
-            self._session.move_playhead(frame)
+            self._session.view.move_playhead(frame)
         elif self._sliding is not None:
             self._slide(event.position().x())
         else:
@@ -255,8 +227,10 @@ class Timeline(QWidget):
         """Take the sound along with the mouse; back where it began it is left as it was."""
         assert self._sliding is not None
         began, offset_s = self._sliding
-        if self._session.sliding is not None or abs(x - began) > SLACK_PX:
-            self._session.slide("audio", offset_s + (self.frame_at(x) - self.frame_at(began)) / self._session.take.fps)
+        if self._session.document.sliding is not None or abs(x - began) > SLACK_PX:
+            self._session.document.slide(
+                "audio", offset_s + (self.frame_at(x) - self.frame_at(began)) / self._session.document.take.fps
+            )
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End the selection, or make it a span; a mere click clears it."""
@@ -265,65 +239,54 @@ class Timeline(QWidget):
         frame, selecting = round(self.frame_at(event.position().x())), self._selecting
         self._selecting, self._scrubbing = None, False
         held, self._sliding = self._sliding, None
-        if held is not None and self._session.sliding is None:
-            self._session.move_playhead(frame)
+        if held is not None and self._session.document.sliding is None:
+            self._session.view.move_playhead(frame)
         elif held is not None:
             self.slid.emit()
         if selecting is None:
             return
         if frame == selecting:
-            self._session.select(None)
-            self._session.move_playhead(frame)
+            self._session.view.select(None)
+            self._session.view.move_playhead(frame)
         elif self._marking:
             self.marked.emit()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Select the frames of a viseme."""
-        if self._lane_at(event.position().y()) == "visemes":
+        if self._hit(event.position()).lane == "visemes":
             self.visemes.drop()
             self.visemes.select(event.position().x())
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         """Offer what can be done with what lies under the pointer, and go there: the menu's actions work on it."""
-        lane, x = self._lane_at(event.y()), event.x()
-        if lane == "visemes":
-            self.visemes.open_menu(x, event.globalPos(), self._colours)
+        under = self._hit(QPointF(event.pos()))
+        if under.lane == "visemes":
+            self.visemes.open_menu(event.x(), event.globalPos(), self._colours)
             return
-        frame = round(self.frame_at(x))
-        span = next((each for each in self._session.marks.spans if each.start <= frame < each.stop), None)
-        mark = self._flags.at(x) if lane == "flags" else None
-        near = self._near(lane, x)
-        kind, told = ("audio", "") if lane == "audio" else ("time", "")
-        if lane == "spans" and span is not None:
-            self._session.select((span.start, span.stop))
-            kind, frame = "span", span.start
-        elif mark is not None:
-            kind, frame, told = "flag", mark.flag.start, mark.flag.sentence
-        elif near is not None:
-            kind, frame, told = lane.removesuffix("s"), near.frame, near.text if isinstance(near, Note) else ""
-        self._session.move_playhead(frame)
-        self.menu_wanted.emit(kind, event.globalPos(), told)
+        if under.span is not None:
+            self._session.view.select((under.span.start, under.span.stop))
+        self._session.view.move_playhead(under.goes_to)
+        self.menu_wanted.emit(under.kind, event.globalPos(), under.sentence)
 
     def told_at(self, place: QPointF) -> str:
         """Return what to tell of a place in the widget."""
-        lane = self._lane_at(place.y())
-        mark = self._flags.at(place.x()) if lane == "flags" else None
-        near = self._near(lane, place.x())
-        if mark is not None:
-            return mark.sentence
-        if isinstance(near, Note):
-            return f"{near.text}\n{near.author}, {near.time}"
-        said = self.visemes.tell(place.x()) if lane == "visemes" and place.x() >= self._gutter else ""
-        return said or HINTS.get(lane, HINTS[""])
+        under = self._hit(place)
+        if under.flag is not None:
+            return under.flag.sentence
+        if isinstance(under.mark, Note):
+            replies = (f"↳ {reply.text}" for reply in under.mark.replies)
+            return "\n".join([under.mark.text, f"{under.mark.author}, {under.mark.time}", *replies])
+        on_visemes = under.lane == "visemes" and place.x() >= self._gutter
+        return (self.visemes.tell(place.x()) if on_visemes else "") or HINTS.get(under.lane, HINTS[""])
 
     def _show_pointer(self, place: QPointF) -> None:
         self.setToolTip(tip(self.told_at(place)))
-        lane = self._lane_at(place.y())
-        if lane == "visemes" and self.visemes.edge_at(place.x()) is not None:
+        under = self._hit(place)
+        if under.lane == "visemes" and self.visemes.edge_at(place.x()) is not None:
             self.setCursor(Qt.CursorShape.SplitHCursor)
-        elif lane == "audio":
+        elif under.lane == "audio":
             self.setCursor(Qt.CursorShape.SizeHorCursor)
-        elif lane == "flags" and self._flags.at(place.x()) is not None:
+        elif under.flag is not None:
             self.setCursor(Qt.CursorShape.PointingHandCursor)
         else:
             self.unsetCursor()
@@ -333,32 +296,8 @@ class Timeline(QWidget):
         turn = event.angleDelta()
         notches = (turn.y() or turn.x()) / 120.0
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(turn.x()) > abs(turn.y()):
-            first, last = self._session.view
+            first, last = self._session.view.range
             shift = -notches * 0.1 * (last - first)
-            self._session.set_view(first + shift, last + shift)
+            self._session.view.set_range(first + shift, last + shift)
         else:
-            self._session.zoom_view(1.2**notches, self.frame_at(event.position().x()))
-
-
-class TimeScroll(QScrollBar):
-    """Where in the take the view is, in frames."""
-
-    def __init__(self, session: Session) -> None:
-        super().__init__(Qt.Orientation.Horizontal)
-        self._session = session
-        self.valueChanged.connect(self._scrolled)
-        session.changed.connect(self._on_change)
-        self._on_change(Change.VIEW)
-
-    def _on_change(self, change: Change) -> None:
-        if change & (Change.TAKE | Change.VIEW):
-            first, last = self._session.view
-            with QSignalBlocker(self):
-                self.setRange(0, max(0, len(self._session.take) - 1 - int(last - first)))
-                self.setPageStep(max(1, int(last - first)))
-                self.setSingleStep(max(1, int((last - first) / 20)))
-                self.setValue(int(first))
-
-    def _scrolled(self, value: int) -> None:
-        first, last = self._session.view
-        self._session.set_view(value, value + last - first)
+            self._session.view.zoom(1.2**notches, self.frame_at(event.position().x()))

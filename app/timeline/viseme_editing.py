@@ -99,7 +99,7 @@ class VisemeEditing(QObject):
 
     def draw(self, painter: QPainter, colours: Palette) -> None:
         """Draw the lane, with the boundary where it is held."""
-        lane = self._session.visemes
+        lane = self._session.document.visemes
         if lane is None:
             return
         painter.save()
@@ -116,26 +116,26 @@ class VisemeEditing(QObject):
 
     def cue_at(self, x: float) -> int | None:
         """Return the cue under the pointer."""
-        lane = self._session.visemes
+        lane = self._session.document.visemes
         return lane.at(self.time_at(x)) if lane is not None else None
 
     def edge_at(self, x: float) -> Edge | None:
         """Return the boundary that the pointer would take hold of."""
-        lane, (box, (first_s, last_s)) = self._session.visemes, self._place()
+        lane, (box, (first_s, last_s)) = self._session.document.visemes, self._place()
         if lane is None:
             return None
         return lane.edge_near(self.time_at(x), EDGE_PX / max(1.0, box.width()) * (last_s - first_s))
 
     def tell(self, x: float) -> str:
         """Return what to say of what lies under the pointer."""
-        lane, index = self._session.visemes, self.cue_at(x)
+        lane, index = self._session.document.visemes, self.cue_at(x)
         return describe(lane, index) if lane is not None and index is not None else ""
 
     # --- dragging a boundary
 
     def take(self, x: float) -> bool:
         """Take hold of the boundary under the pointer, if there is one."""
-        lane, edge = self._session.visemes, self.edge_at(x)
+        lane, edge = self._session.document.visemes, self.edge_at(x)
         if lane is None or edge is None:
             return False
         self._drag = _Drag(edge, self.time_at(x), lane, lane)
@@ -172,13 +172,13 @@ class VisemeEditing(QObject):
 
     def select(self, x: float) -> None:
         """Select the frames of the cue under the pointer."""
-        lane, index = self._session.visemes, self.cue_at(x)
+        lane, index = self._session.document.visemes, self.cue_at(x)
         if lane is not None and index is not None:
-            self._session.select(lane.frames_of(index, self._session.take.fps))
+            self._session.view.select(lane.frames_of(index, self._session.document.take.fps))
 
     def open_menu(self, x: float, at: QPoint, colours: Palette) -> None:
         """Offer what the cue under the pointer could be instead, and what can be done with the lane."""
-        lane, index = self._session.visemes, self.cue_at(x)
+        lane, index = self._session.document.visemes, self.cue_at(x)
         if lane is None:
             return
         self.menu = menu = QMenu(self._host)
@@ -201,7 +201,7 @@ class VisemeEditing(QObject):
 
     def type_name(self, index: int, *_: bool) -> None:
         """Let a cue's name be typed, and its begin and end."""
-        lane = self._session.visemes
+        lane = self._session.document.visemes
         if lane is None:
             return
         (start_s, stop_s), label = lane.times_s[index], lane.cues[index].label.strip() or "sil"
@@ -213,7 +213,7 @@ class VisemeEditing(QObject):
 
     def type_shift(self) -> None:
         """Let the time be typed at which the lane's file begins."""
-        lane = self._session.visemes
+        lane = self._session.document.visemes
         if lane is not None:
             hint = "seconds of the take at which the file of the visemes begins"
             entry = self._open_entry(f"{lane.offset_s:g}", hint, self._place()[0].left())
@@ -249,7 +249,7 @@ class VisemeEditing(QObject):
             self.failed.emit(error.sentence, error.advice)
 
     def _begin_at_playhead(self, lane: VisemeLane, index: int, *_: bool) -> None:
-        by_s = self._session.playhead / self._session.take.fps - float(lane.times_s[index, 0])
+        by_s = self._session.view.playhead / self._session.document.take.fps - float(lane.times_s[index, 0])
         self._push(lane, shifted(lane, lane.offset_s + by_s), "shift the visemes")
 
     def _want(self, name: str, *_: bool) -> None:
@@ -257,8 +257,8 @@ class VisemeEditing(QObject):
 
     def _push(self, before: VisemeLane, after: VisemeLane, title: str) -> None:
         """Make one undo step, unless the lane has become another since it was taken hold of."""
-        if self._session.visemes is before:
-            self._session.undo.push(VisemesCommand(self._session, after, title))
+        if self._session.document.visemes is before:
+            self._session.document.undo.push(VisemesCommand.of(self._session.document, after, title))
 
 
 def _seconds(text: str) -> float:

@@ -19,10 +19,12 @@ class Section(QWidget):
     Attributes
     ----------
     tools : the tools it is shown with; empty for always
+    away : the tools it makes room for
     needed : whether it has anything to show
     """
 
     tools: frozenset[str] = frozenset()
+    away: frozenset[str] = frozenset()
     needed = True
 
     def __init__(self, session: Session, title: str) -> None:

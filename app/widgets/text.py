@@ -6,8 +6,9 @@ import re
 import textwrap
 
 from PySide6.QtCore import QEvent, QObject, Qt
-from PySide6.QtWidgets import QApplication, QLabel, QMessageBox, QWidget
+from PySide6.QtWidgets import QLabel, QMessageBox, QWidget
 
+from app.widgets.watching import Watcher
 from engine.words import NAME_LENGTH, plain
 
 LABEL_LENGTH = 2000  # characters of a label of several lines
@@ -74,23 +75,11 @@ def message_box(parent: QWidget, heading: str, text: str) -> QMessageBox:
     return box
 
 
-class PlainText(QObject):
+class PlainText(Watcher):
     """Makes labels plain that Qt itself builds, those of tooltips and of its dialogs, before they are first drawn.
 
     A label that shall show markup says so by its text format.
     """
-
-    def __init__(self, parent: QObject) -> None:
-        super().__init__(parent)
-        application = QApplication.instance()
-        if application is not None:
-            application.installEventFilter(self)
-
-    def let_go(self) -> None:
-        """Watch no longer."""
-        application = QApplication.instance()
-        if application is not None:
-            application.removeEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Set the text format of each label when it gets its looks."""

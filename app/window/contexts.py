@@ -45,10 +45,10 @@ class Contexts(QObject):
 
     def kinds_here(self) -> list[str]:
         """Return the kinds of things at the playhead, those one would look for first in front."""
-        session, frame = self._window.session, self._window.session.playhead
+        session, frame = self._window.session, self._window.session.view.playhead
         there = {
-            "note": any(note.frame == frame for note in session.marks.notes),
-            "pin": any(pin.frame == frame for pin in session.marks.pins),
+            "note": any(note.frame == frame for note in session.document.marks.notes),
+            "pin": any(pin.frame == frame for pin in session.document.marks.pins),
             "span": self._window.spans.chosen is not None,
         }
         return [*(kind for kind, is_there in there.items() if is_there), "curve"]

@@ -24,6 +24,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.widgets.watching import Watcher
+
 ENTRIES = (QLineEdit, QAbstractSpinBox, QPlainTextEdit, QTextEdit, QAbstractItemView)
 BYSTANDERS = (QMenuBar, QScrollBar)  # a press on them changes nothing
 
@@ -65,7 +67,7 @@ def _in_layout(layout: QLayout) -> Iterator[QWidget]:
             yield from _in_layout(inner)
 
 
-class Focus(QObject):
+class Focus(Watcher):
     """Gives the keys back to the lanes whenever what had them is done, hidden or switched off.
 
     Parameters
@@ -76,7 +78,6 @@ class Focus(QObject):
     """
 
     def __init__(self, window: QMainWindow, lanes: QWidget, canvases: Sequence[QWidget]) -> None:
-        super().__init__(window)
         root = window.centralWidget()
         assert root is not None
         self._window, self._root, self._lanes = window, root, lanes
@@ -85,16 +86,16 @@ class Focus(QObject):
             canvas.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         for area in root.findChildren(QScrollArea):
             area.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # it has nothing to do with keys, and would show no ring
+        super().__init__(window)
         application = QApplication.instance()
         assert isinstance(application, QApplication)
-        application.installEventFilter(self)
         application.focusChanged.connect(self._on_focus)
 
     def let_go(self) -> None:
         """Watch no longer."""
+        super().let_go()
         application = QApplication.instance()
         if isinstance(application, QApplication):
-            application.removeEventFilter(self)
             application.focusChanged.disconnect(self._on_focus)
 
     def give_back(self) -> None:

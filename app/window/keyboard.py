@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.preview.panel import PreviewPanel
+from app.widgets.watching import Watcher
 from app.window.focus import is_entry
 
 # Editors claim letters, digits and what moves the cursor by themselves; these they would lose to shortcuts.
@@ -39,7 +40,7 @@ OWN: tuple[tuple[type[QWidget], frozenset[Qt.Key]], ...] = (
 LEFT = frozenset({QEvent.Type.WindowDeactivate, QEvent.Type.ApplicationDeactivate})
 
 
-class Keyboard(QObject):
+class Keyboard(Watcher):
     """Watches the keys of the whole program until it is let go.
 
     Parameters
@@ -49,18 +50,9 @@ class Keyboard(QObject):
     """
 
     def __init__(self, window: QWidget, preview: PreviewPanel) -> None:
-        super().__init__(window)
         self._window, self._preview = window, preview
         self._view_before_hold: str | None = None
-        application = QApplication.instance()
-        if application is not None:
-            application.installEventFilter(self)
-
-    def let_go(self) -> None:
-        """Watch no longer."""
-        application = QApplication.instance()
-        if application is not None:
-            application.removeEventFilter(self)
+        super().__init__(window)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Show the original for as long as B is held; leave its keys to whatever is typed into."""

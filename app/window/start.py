@@ -42,7 +42,7 @@ def start(path: Path | None) -> int:
 
 
 def _tell_what_is_open(window) -> None:  # type: ignore[no-untyped-def]
-    if window.session.path == DEMO_TAKE:
+    if window.session.document.path == DEMO_TAKE:
         window.notices.add("The demo take is open instead.")
 
 

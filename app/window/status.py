@@ -19,7 +19,7 @@ from engine.take import timecode
 from engine.words import counted, plain
 
 LONGEST = 40  # characters of a name in this line
-NAMES = ("take", "rate", "length", "place", "notice", "engine", "sound", "saved", "speed")
+NAMES = ("take", "rate", "length", "place", "pace", "notice", "engine", "sound", "saved", "speed")
 TOLD_MS = 12_000  # how long something is told in passing
 LATENCIES = 20  # that the median is taken of
 
@@ -71,6 +71,10 @@ class StatusBar(QFrame):
     def __getitem__(self, name: str) -> Label:
         return self._labels[name]
 
+    def engine_ready(self) -> None:
+        """Say no longer that the networks are loaded."""
+        self._labels["engine"].setText("")
+
     def tell(self, text: str) -> None:
         """Tell something in passing: it goes when it was there long enough to be read."""
         self["notice"].setText(text)
@@ -84,8 +88,8 @@ class StatusBar(QFrame):
 
     def show_take(self, *_: object) -> None:
         """Tell what is open."""
-        take = self._session.take
-        self["take"].setText(self._session.name)
+        take = self._session.document.take
+        self["take"].setText(self._session.document.name)
         self["rate"].setText(f"{take.fps:g} fps")
         self["length"].setText(f"{counted(len(take), 'frame')} · {timecode(take.duration_s, take.fps)}")
         self.show_place()
@@ -93,8 +97,14 @@ class StatusBar(QFrame):
 
     def show_place(self) -> None:
         """Tell where the playhead is."""
-        frame, fps = self._session.playhead, self._session.take.fps
+        frame, fps = self._session.view.playhead, self._session.document.take.fps
         self["place"].setText(f"frame {frame:,}" if self.in_frames else f"{timecode(frame / fps, fps)} · {frame}")
+
+    def show_speed(self, speed: float) -> None:
+        """Tell how fast the take plays where that is not its own speed; 0 where it stands."""
+        names = {0.25: "¼", 0.5: "½"}
+        told = f"{names.get(abs(speed), f'{abs(speed):g}')}× speed"
+        self["pace"].setText("" if speed in (0.0, 1.0) else f"{told}, backwards" if speed < 0 else told)
 
     def count_in_frames(self, on: bool) -> None:
         """Tell time in frames, or in timecode too."""
@@ -113,15 +123,15 @@ class StatusBar(QFrame):
             self.show_place()
         if change & (Change.TAKE | Change.CURVES | Change.SAVED):
             self._show_saved()
-        if change & Change.MEDIA and self._session.audio is not self._sound:
-            self._sound = self._session.audio
+        if change & Change.MEDIA and self._session.document.audio is not self._sound:
+            self._sound = self._session.document.audio
             if beyond := beyond_the_take(self._session):
                 self.tell(beyond)
 
     def _show_saved(self) -> None:
         saving, opening = self._keeper.saving, self._opening.path
         saved = "saved" if self._keeper.path else ""
-        told = "edits not saved yet" if self._session.edited else saved
+        told = "edits not saved yet" if self._session.document.edited else saved
         under_way = [f"saving {plain(saving.name, longest=LONGEST)}…"] if saving else []
         under_way += [f"opening {plain(opening.name, longest=LONGEST)}…"] if opening else []
         self["saved"].setText(" ".join(under_way) or told)
@@ -135,7 +145,7 @@ class StatusBar(QFrame):
         self._show_saved()
 
     def _show_sound(self) -> None:
-        attached = self._session.audio is not None
+        attached = self._session.document.audio is not None
         self["sound"].setText((f"♪ {self._media.device}" if self._media.device else "♪ silent") if attached else "")
         self["sound"].setToolTip(
             "The loudspeaker that plays" if self._media.device else "No loudspeaker was found; time runs by the clock."

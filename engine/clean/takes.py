@@ -9,9 +9,9 @@ import numpy as np
 
 from engine.clean.infer import Cleaner, bundled
 from engine.clean.lag import lag_ms
+from engine.easing import ease
 from engine.errors import EditError
-from engine.take import Array, Mask, Take
-from engine.words import counted
+from engine.take import Array, Mask, Take, require_frames
 
 WARM_UP_S = 5.0  # listened to before a span, so that cleaning a span equals cleaning the take
 FEATHER_S = 0.1  # from raw to clean at the ends of a span
@@ -59,8 +59,7 @@ def clean(
     start, stop = frames or (0, len(take))
     if not 0.0 <= strength <= 1.0:
         raise EditError(f"A strength of {strength:g} is not between 0 and 1.")
-    if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
+    require_frames(take, start, stop)
     if strength == 0.0:
         return Cleaned(take, np.zeros(take.weights.shape), 0.0, (start, start))
     first = max(0, start - round(WARM_UP_S * take.fps))
@@ -95,4 +94,4 @@ def _feather(frames: int, start: int, stop: int, width: float) -> Array:
     rise = np.ones(frames) if start == 0 else np.clip((frame - start + 1) / width, 0, 1)
     fall = np.ones(frames) if stop == frames else np.clip((stop - frame) / width, 0, 1)
     edge = np.minimum(rise, fall)
-    return np.asarray(edge * edge * (3 - 2 * edge))
+    return ease(edge)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from engine.errors import FormatError
 from engine.formats import livelink
-from engine.formats import livelink_folder as takes
-from engine.formats.reading import AUTOMATIC, Reading, Sides
+from engine.formats.base.reading import AUTOMATIC, Reading, Sides
+from engine.formats.livelink import folder as takes
 from engine.take import Take
 
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from engine.errors import FormatError
 from engine.formats import film
-from engine.formats.content import require_file, unread
+from engine.formats.base.content import require_file, unread
 
 if TYPE_CHECKING:
     import soundfile

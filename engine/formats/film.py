@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from engine.errors import FormatError
-from engine.formats.content import require_file
+from engine.formats.base.content import require_file
 
 if TYPE_CHECKING:
     from av.container import InputContainer

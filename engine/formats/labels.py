@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from engine.errors import FormatError
-from engine.formats.atomic import write_bytes
-from engine.formats.textfile import read_text
+from engine.formats.base.atomic import write_bytes
+from engine.formats.base.textfile import read_text
 from engine.take import SHAPE_INDEX
 
 EXPECTED = 'A label file is JSON: {"labels": [{"frame": 12, "weights": {"jawOpen": 0.4}}]}, or CSV: frame,jawOpen,...'

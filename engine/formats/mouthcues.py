@@ -9,7 +9,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from engine.errors import FormatError
-from engine.formats.textfile import read_text
+from engine.formats.base.textfile import read_text
 from engine.speech.visemes import Cue
 
 # The class that each mouth shape looks most like.

@@ -13,7 +13,7 @@ from itertools import islice
 from pathlib import Path
 
 from engine.errors import FormatError
-from engine.formats.textfile import read_text
+from engine.formats.base.textfile import read_text
 from engine.speech.alphabets import MAX_LABELS, class_anywhere
 from engine.speech.visemes import Cue
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from engine import exact
 from engine.controls import CONTROL_INDEX, bundled_measurer
+from engine.easing import ease
 from engine.inpaint.gap import Gap
 from engine.inpaint.regions import REGIONS
 from engine.inpaint.seams import distance_frames
@@ -30,8 +31,7 @@ def shut_lips(made: Array, gap: Gap) -> Array:
     away = distance_frames(np.where(said, 0.0, np.nan)[:, None])[:, 0]
     nearness = np.clip(1 - away / EASE_FRAMES, 0.0, 1.0)
     lips = bundled_measurer().measure(made)[:, _LIPS]
-    ease = (nearness * nearness * (3 - 2 * nearness))[:, None]
-    asked = lips - ease * np.maximum(0.0, lips - SHUT_MM)
+    asked = lips - ease(nearness)[:, None] * np.maximum(0.0, lips - SHUT_MM)
     rows = (asked < lips)[:, 0]
     if not rows.any():
         return made

@@ -12,7 +12,7 @@ from torch import Tensor, nn
 from engine.controls import CONTROLS
 from engine.models.checkpoint import MODELS, load_model, rebuilt
 from engine.models.threads import one_thread
-from engine.models.unet import ALIGNMENT, UNet
+from engine.models.unet import ALIGNMENT, BatchNormUNet
 from engine.take import SHAPES, Array
 
 MEMBERS = 3  # one errs three per cent more on validation takes
@@ -28,7 +28,7 @@ class Expected(nn.Module):
 
     def __init__(self, members: int = MEMBERS) -> None:
         super().__init__()
-        self.members = nn.ModuleList(UNet(2 * len(CONTROLS), len(SHAPES)) for _ in range(members))
+        self.members = nn.ModuleList(BatchNormUNet(2 * len(CONTROLS), len(SHAPES)) for _ in range(members))
         for name, size, value in (("rest", len(CONTROLS), 0.0), ("mean", len(SHAPES), 0.0)):
             self.register_buffer(name, torch.full((size,), value))
         for name, size in (("spread", len(CONTROLS)), ("scale", len(SHAPES))):

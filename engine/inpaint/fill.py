@@ -14,7 +14,7 @@ from engine.errors import EditError
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler, bundled
 from engine.inpaint.regions import region_shapes
-from engine.inpaint.request import Request, Style, checked
+from engine.inpaint.request import FillRequest, Style, checked
 from engine.inpaint.seams import REACH_FRAMES, bridged, land
 from engine.models.resample import interpolate
 from engine.pose import Pose
@@ -45,7 +45,7 @@ class Fill:
     span: tuple[int, int]
     seed: int
     style: Style
-    inputs: Request = field(repr=False)
+    inputs: FillRequest = field(repr=False)
 
 
 def fill(
@@ -77,7 +77,7 @@ def fill(
 
     Raises `EditError`, with nothing changed, for a span, pins or guidance that do not fit the take.
     """
-    request = Request(
+    request = FillRequest(
         frames, region, dict(pins or {}), guide, guide_offset, tuple(visemes), dict(controls or {}), style
     )
     return refill(take, request, seeds=range(seed, seed + variants), filler=filler)
@@ -85,12 +85,13 @@ def fill(
 
 def refill(
     take: Take,
-    request: Request,
+    request: FillRequest,
     *,
-    seeds: Sequence[int] = (0,),
+    seeds: Sequence[int] | None = None,
     filler: Filler | None = None,
 ) -> list[Fill]:
-    """Fill a span as `request` says, once per seed; raises `EditError` as `fill` does."""
+    """Fill a span as `request` says, once per seed, its own without any; raises `EditError` as `fill` does."""
+    seeds = (request.seed,) if seeds is None else seeds
     if not len(seeds):
         raise EditError("At least one variant must be asked for.")
     request = checked(request, take)
@@ -103,12 +104,12 @@ def refill(
         gap = gap if gap.guided.any() else replace(gap, rest=_rest(take, [request.frames, *request.besides]))
         made = (filler or bundled()).fill(gap, seeds=seeds)
     return [
-        Fill(_placed(take, request, motion, window), request.frames, seed, style, request)
+        Fill(_placed(take, request, motion, window), request.frames, seed, style, replace(request, seed=seed))
         for seed, motion in zip(seeds, made, strict=True)
     ]
 
 
-def fill_spans(take: Take, spans: Sequence[tuple[int, int]], request: Request, *, seed: int = 0) -> Take:
+def fill_spans(take: Take, spans: Sequence[tuple[int, int]], request: FillRequest, *, seed: int = 0) -> Take:
     """Fill several spans one after the other, each with the pins and controls that lie in it.
 
     Raises `EditError` for spans that overlap or share no pin with one that is asked for.
@@ -134,13 +135,13 @@ def lost_spans(take: Take) -> list[tuple[int, int]]:
     return runs(take.lost)
 
 
-def fill_lost(take: Take, *, seed: int = 0, request: Request | None = None) -> Take:
+def fill_lost(take: Take, *, seed: int = 0, request: FillRequest | None = None) -> Take:
     """Fill every lost run; short ones are bridged and long ones performed unless `request` says otherwise."""
-    request = request or Request((0, 0))
+    request = request or FillRequest((0, 0))
     return fill_spans(take, lost_spans(take), replace(request, lost=True), seed=seed)
 
 
-def _style(request: Request, take: Take) -> Style:
+def _style(request: FillRequest, take: Take) -> Style:
     if request.style != "auto":
         return request.style
     guided = request.guide is not None or request.visemes or request.controls
@@ -173,7 +174,7 @@ class _Window:
         return int(np.clip(round(frame / self.pace) - self.first, 0, self.frames - 1))
 
 
-def _gap(take: Take, request: Request, window: _Window) -> Gap:
+def _gap(take: Take, request: FillRequest, window: _Window) -> Gap:
     (start, stop), shapes = request.frames, region_shapes(request.region)
     known = interpolate(take.weights, window.at)
     inside = (window.at > start - 1) & (window.at < stop)
@@ -193,7 +194,7 @@ def _gap(take: Take, request: Request, window: _Window) -> Gap:
     return gap_of(known, guide=guide, visemes=one_hot(classes), controls=_controls(request, window, inside))
 
 
-def _unknown(take: Take, request: Request) -> Mask:
+def _unknown(take: Take, request: FillRequest) -> Mask:
     """Return which frames, (frames,), nobody knows anything of: lost ones, and further spans that are not filled yet."""
     unknown: Mask = take.lost.copy()
     for start, stop in request.unmade:
@@ -216,7 +217,7 @@ def _rest(take: Take, spans: Sequence[tuple[int, int]]) -> list[Array]:
     return [interpolate(take.weights, start + at) for start, at in steps]
 
 
-def _controls(request: Request, window: _Window, inside: np.ndarray) -> Array:
+def _controls(request: FillRequest, window: _Window, inside: np.ndarray) -> Array:
     curves = np.full((window.frames, len(CONTROLS)), np.nan)
     start, stop = request.frames
     for name, curve in request.controls.items():
@@ -225,7 +226,7 @@ def _controls(request: Request, window: _Window, inside: np.ndarray) -> Array:
     return curves
 
 
-def _placed(take: Take, request: Request, motion: Array, window: _Window) -> Take:
+def _placed(take: Take, request: FillRequest, motion: Array, window: _Window) -> Take:
     """Put motion at the model rate into the take's span and region, through its seams and pins."""
     (start, stop), shapes = request.frames, np.flatnonzero(region_shapes(request.region))
     first, last = max(0, start - _SEAM), min(len(take), stop + _SEAM)

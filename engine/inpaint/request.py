@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from engine.controls import control_index
 from engine.errors import EditError
 from engine.inpaint.regions import region_shapes
+from engine.inpaint.stored import FAULTS, FIELDS, GONE, guide_of, kept_guide
 from engine.pose import Pose, filled
 from engine.speech.visemes import Cue, class_of
-from engine.take import SHAPES, Array, Take
+from engine.take import SHAPES, Array, Take, require_frames
 from engine.words import counted
 
 LOWEST, HIGHEST = -0.1, 1.1  # recorded weights stray a little outside 0..1
@@ -24,7 +25,7 @@ STYLES: tuple[Style, ...] = ("auto", "bridge", "perform")
 
 
 @dataclass(frozen=True, eq=False)
-class Request:
+class FillRequest:
     """What steers a fill; see `fill` for the meaning of most.
 
     Attributes
@@ -32,8 +33,10 @@ class Request:
     lost : allows spans of a single frame
     besides : further spans that are marked for work: they lend no motion to this one
     unmade : those among them that are not filled yet: beside this one they are no more known than lost frames
+    seed : which of the many possible motions
     """
 
+    verb: ClassVar[str] = "fill"
     frames: Frames
     region: str = "face"
     pins: Mapping[int, Pose] = field(default_factory=dict)
@@ -45,10 +48,26 @@ class Request:
     lost: bool = False
     besides: tuple[Frames, ...] = ()
     unmade: tuple[Frames, ...] = ()
+    seed: int = 0
 
     def poses(self) -> dict[int, Array]:
         """Return pins as (52,) weights by frame, NaN where a shape is free."""
         return {frame: filled(pose) for frame, pose in self.pins.items()}
+
+    def stored(self) -> dict[str, Any]:
+        """Return all that it says, as JSON can hold it; of a guide, the frames around the span."""
+        start, stop = self.frames
+        there = kept_guide(self.guide, (start + self.guide_offset, stop + self.guide_offset))
+        return {name: field.encode(getattr(self, name)) for name, field in FIELDS.items()} | there
+
+    @classmethod
+    def restored(cls, inputs: Mapping[str, Any]) -> FillRequest:
+        """Return the request that was stored; raises `EditError` for anything else."""
+        known = {"seed": 0, **inputs}  # it was kept beside the request before
+        try:
+            return cls(guide=guide_of(inputs), **{name: field.decode(known[name]) for name, field in FIELDS.items()})
+        except FAULTS as error:
+            raise GONE from error
 
 
 def merged_pins(pins: Iterable[tuple[int, Pose]]) -> dict[int, Pose]:
@@ -65,7 +84,7 @@ def merged_pins(pins: Iterable[tuple[int, Pose]]) -> dict[int, Pose]:
     return dict(merged)
 
 
-def checked(request: Request, take: Take) -> Request:
+def checked(request: FillRequest, take: Take) -> FillRequest:
     """Return a request that fits a take; raises `EditError` with one sentence where it does not."""
     _check_span(request, take)
     _check_pins(request)
@@ -79,10 +98,9 @@ def checked(request: Request, take: Take) -> Request:
     return replace(request, controls={name: _curve(name, c, length) for name, c in request.controls.items()})
 
 
-def _check_span(request: Request, take: Take) -> None:
+def _check_span(request: FillRequest, take: Take) -> None:
     start, stop = request.frames
-    if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
+    require_frames(take, start, stop)
     if stop - start < 2 and not request.lost:
         raise EditError("A span of one frame cannot be filled.", "Mark at least two frames.")
     if request.style not in STYLES:
@@ -95,7 +113,7 @@ def _check_span(request: Request, take: Take) -> None:
         )
 
 
-def _check_pins(request: Request) -> None:
+def _check_pins(request: FillRequest) -> None:
     start, stop = request.frames
     region = region_shapes(request.region)
     for frame, pose in request.poses().items():
@@ -110,7 +128,7 @@ def _check_pins(request: Request) -> None:
             raise EditError(f"The pin at frame {frame} sets {shape} outside 0..1.")
 
 
-def _check_guide(request: Request, guide: Take, take: Take) -> None:
+def _check_guide(request: FillRequest, guide: Take, take: Take) -> None:
     if abs(guide.fps / take.fps - 1) > 1e-3:
         raise EditError(
             f"The guide runs at {guide.fps:.5g} frames per second, the take at {take.fps:.5g}.",

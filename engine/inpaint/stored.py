@@ -1,66 +1,58 @@
-"""A fill's request as JSON can hold it, so that a project can make the very same motion again."""
+"""How a fill's request is kept as JSON can hold it, so that a project can make the very same motion again."""
 
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
-from typing import Any, cast
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from engine.errors import EditError
-from engine.inpaint.request import Frames, Request, Style
+from engine.pose import filled
 from engine.speech.visemes import Cue
 from engine.take import SHAPES, Array, Take
 
+if TYPE_CHECKING:
+    from engine.pose import Pose
+
 REACH_S = 3.0  # of a guide on either side of the span that is kept; a fill looks two seconds far
 MAX_FRAMES = 1_000_000
+MAX_SEED = 2**31 - 1
 GONE = EditError("This fill does not say what it was made from.", "Fill the span anew.")
+Frames = tuple[int, int]
 
 
-def stored(request: Request) -> dict[str, Any]:
-    """Return all that a request says; a guide by its frames around the span, since its file may change or vanish."""
-    pins = {
-        str(frame): {name: value for name, value in zip(SHAPES, pose.tolist(), strict=True) if np.isfinite(value)}
-        for frame, pose in request.poses().items()
-    }
-    return {
-        "frames": list(request.frames),
-        "region": request.region,
-        "pins": pins,
-        "controls": {name: _numbers(curve) for name, curve in request.controls.items()},
-        "guide": request.guide.name if request.guide is not None else "",
-        "guide_frames": None if request.guide is None else _guide(request, request.guide),
-        "guide_offset": request.guide_offset,
-        "visemes": [[cue.start_s, cue.stop_s, cue.label] for cue in request.visemes],
-        "style": request.style,
-        "lost": request.lost,
-        "besides": [list(span) for span in request.besides],
-        "unmade": [list(span) for span in request.unmade],
-    }
+@dataclass(frozen=True)
+class Field:
+    """How one field of a request is kept: `encode` makes of its value what JSON can hold, `decode` the value again."""
+
+    encode: Callable[[Any], Any]
+    decode: Callable[[Any], Any]
 
 
-def restored(inputs: Mapping[str, Any]) -> Request:
-    """Return the request that `stored` made this from; raises `EditError` for anything else."""
-    try:
-        controls = inputs["controls"]
-        if not isinstance(controls, Mapping):  # as written before the values were kept
-            raise GONE
-        return Request(
-            frames=_span(inputs["frames"]),
-            region=str(inputs["region"]),
-            pins={int(frame): {str(k): float(v) for k, v in pose.items()} for frame, pose in inputs["pins"].items()},
-            guide=_guide_of(inputs),
-            guide_offset=int(inputs["guide_offset"]),
-            visemes=tuple(Cue(float(start), float(stop), str(label)) for start, stop, label in inputs["visemes"]),
-            controls={str(name): _curve(curve) for name, curve in controls.items()},
-            style=cast(Style, str(inputs["style"])),
-            lost=bool(inputs["lost"]),
-            besides=tuple(_span(span) for span in inputs["besides"]),
-            unmade=tuple(_span(span) for span in inputs["unmade"]),
-        )
-    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
-        raise GONE from error
+def _spans(spans: Any) -> tuple[Frames, ...]:
+    return tuple(_span(span) for span in spans)
+
+
+def _poses(pins: Mapping[int, Pose]) -> dict[str, dict[str, float]]:
+    named = {frame: zip(SHAPES, filled(pose).tolist(), strict=True) for frame, pose in pins.items()}
+    return {str(frame): {name: value for name, value in pose if np.isfinite(value)} for frame, pose in named.items()}
+
+
+def _pins(stored: Any) -> dict[int, dict[str, float]]:
+    return {int(frame): {str(name): float(value) for name, value in pose.items()} for frame, pose in stored.items()}
+
+
+def _curves(stored: Any) -> dict[str, Array | float]:
+    if not isinstance(stored, Mapping):  # as written before the values were kept
+        raise GONE
+    return {str(name): _curve(curve) for name, curve in stored.items()}
+
+
+def _seed(stored: Any) -> int:
+    return stored if isinstance(stored, int) and 0 <= stored <= MAX_SEED else 0
 
 
 def _span(span: Any) -> Frames:
@@ -81,21 +73,20 @@ def _curve(values: Any) -> Array | float:
     return np.array([np.nan if value is None else float(value) for value in values])
 
 
-def _guide(request: Request, guide: Take) -> dict[str, Any]:
+def kept_guide(guide: Take | None, frames: Frames) -> dict[str, Any]:
+    """Return a guide by those of its frames that a fill of its `frames` looks at, since its file may change or vanish."""
+    if guide is None:
+        return {"guide": "", "guide_frames": None}
     reach = round(REACH_S * guide.fps)
-    first = max(0, request.frames[0] + request.guide_offset - reach)
-    last = min(len(guide), request.frames[1] + request.guide_offset + reach)
+    first, last = max(0, frames[0] - reach), min(len(guide), frames[1] + reach)
     rows = np.ascontiguousarray(guide.weights[first:last], "<f8")
-    return {
-        "fps": guide.fps,
-        "frames": len(guide),
-        "first": first,
-        "weights": base64.b64encode(rows.tobytes()).decode("ascii"),
-        "lost": np.flatnonzero(guide.lost[first:last]).tolist(),
-    }
+    lost = np.flatnonzero(guide.lost[first:last]).tolist()
+    packed = base64.b64encode(rows.tobytes()).decode("ascii")
+    known = {"fps": guide.fps, "frames": len(guide), "first": first, "weights": packed, "lost": lost}
+    return {"guide": guide.name, "guide_frames": known}
 
 
-def _guide_of(inputs: Mapping[str, Any]) -> Take | None:
+def guide_of(inputs: Mapping[str, Any]) -> Take | None:
     """Return a guide as long as the one that was used; what lies far from the span is a face at rest."""
     kept = inputs["guide_frames"]
     if kept is None:
@@ -110,3 +101,23 @@ def _guide_of(inputs: Mapping[str, Any]) -> Take | None:
     weights[first : first + len(rows)] = rows
     lost[first + np.array(kept["lost"], np.int64)] = True
     return Take(weights, float(kept["fps"]), lost, name=str(inputs["guide"]))
+
+
+def _visemes(stored: Any) -> tuple[Cue, ...]:
+    return tuple(Cue(float(start), float(stop), str(label)) for start, stop, label in stored)
+
+
+FIELDS: dict[str, Field] = {  # of a request, all but its guide
+    "frames": Field(list, _span),
+    "region": Field(str, str),
+    "pins": Field(_poses, _pins),
+    "guide_offset": Field(int, int),
+    "visemes": Field(lambda cues: [[cue.start_s, cue.stop_s, cue.label] for cue in cues], _visemes),
+    "controls": Field(lambda curves: {name: _numbers(curve) for name, curve in curves.items()}, _curves),
+    "style": Field(str, str),
+    "lost": Field(bool, bool),
+    "besides": Field(lambda spans: [list(span) for span in spans], _spans),
+    "unmade": Field(lambda spans: [list(span) for span in spans], _spans),
+    "seed": Field(int, _seed),
+}
+FAULTS = (KeyError, TypeError, ValueError, AttributeError, OverflowError)  # of what was stored by no request

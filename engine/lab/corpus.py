@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from engine import assets
 from engine.errors import EngineError
 from engine.formats import livelink
 from engine.lab import facegood
@@ -44,7 +45,7 @@ class Piece:
 def data_folder() -> Path:
     """Return the folder of recorded takes: `RETAKE_DATA`, else `../shared/data` beside the project."""
     named = os.environ.get("RETAKE_DATA")
-    return Path(named) if named else Path(__file__).resolve().parents[3] / "shared" / "data"
+    return Path(named) if named else assets.RECORDINGS
 
 
 def load_takes(folder: Path) -> list[tuple[Take, bool]]:
@@ -90,6 +91,13 @@ def split(folder: Path) -> tuple[list[Piece], list[Piece], list[Piece]]:
             training += early
             validation += late
     return training, validation, test
+
+
+def pieces_to_measure(data: Path | None) -> list[Piece]:
+    """Return the test split, or every take in a folder cut at its lost runs."""
+    if data is None:
+        return split(data_folder())[2]
+    return [piece for take, whole in load_takes(data) for piece in pieces_of(take, whole_face=whole)]
 
 
 def _divide(pieces: list[Piece]) -> tuple[list[Piece], list[Piece]]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from engine.errors import FormatError
-from engine.formats.archive import arrays_of
+from engine.formats.base.archive import arrays_of
 from engine.take import SHAPE_INDEX, SHAPES, Take
 
 MAX_FRAMES = 10_000_000

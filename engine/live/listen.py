@@ -59,15 +59,18 @@ class Allowances:
 
         Whoever sent nothing for `SILENT_S` is forgotten when another needs the place.
         """
-        if sender not in self._left and len(self._left) >= SENDERS:
+        if sender not in self._left and self._full():
             oldest = min((name for name in self._left if name), key=lambda name: self._left[name][1])
             if now_s - self._left[oldest][1] > SILENT_S:
                 del self._left[oldest]
-        key = sender if sender in self._left or len(self._left) < SENDERS else ""
+        key = sender if sender in self._left or not self._full() else ""
         left, last_s = self._left.get(key, (self._burst, now_s))
         left = min(self._burst, left + (now_s - last_s) * self._per_s)
         self._left[key] = (left - 1 if left >= 1 else left, now_s)
         return left >= 1
+
+    def _full(self) -> bool:
+        return len(self._left) - ("" in self._left) >= SENDERS  # the shared bucket is nobody's place
 
 
 class Listener:

@@ -13,11 +13,11 @@ import numpy as np
 
 from engine.errors import EngineError, FormatError
 from engine.formats import livelink
-from engine.formats.atomic import sync_folder
-from engine.formats.content import content_of
-from engine.formats.lock import FileLock, InUseError
-from engine.formats.reading import Reading
-from engine.formats.unfinished import whole_rows
+from engine.formats.base.atomic import sync_folder
+from engine.formats.base.content import content_of
+from engine.formats.base.lock import FileLock, InUseError
+from engine.formats.base.reading import Reading
+from engine.formats.base.unfinished import whole_rows
 from engine.live.record import Recorder
 from engine.take import SHAPES, Array, Take
 

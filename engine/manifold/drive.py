@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from engine.errors import EditError
-from engine.manifold.patches import Indices, LabelSolver, adjacency, alignment, cotangent_laplacian, rings
+from engine.manifold.patches import Indices, LabelSolver, alignment, cotangent_laplacian, rings
 from engine.manifold.pose import Poses, fit_similarity
+from engine.mesh import parts_of
 from engine.take import Array
 from engine.words import counted
 
@@ -126,12 +126,6 @@ class MeshDriver:
         self._carried.carry(posed, self._rest)
         posed = posed @ (pose.scale[0] * pose.turn[0])
         return np.asarray(posed + pose.shift[0])
-
-
-def parts_of(triangles: npt.NDArray[np.integer], vertices: int) -> npt.NDArray[np.int64]:
-    """Return the number of the connected part that each vertex belongs to, (vertices,)."""
-    _, parts = connected_components(adjacency(triangles, vertices), directed=False)
-    return np.asarray(parts, np.int64)
 
 
 def _require_usable(rest: Array, points: Indices) -> None:

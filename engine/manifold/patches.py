@@ -12,6 +12,7 @@ from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
 from engine.errors import EditError
+from engine.mesh import adjacency
 from engine.take import Array
 
 Indices = npt.NDArray[np.int64]
@@ -28,17 +29,6 @@ Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may r
 
 def silent(_: float) -> None:
     """Tell nobody."""
-
-
-def adjacency(triangles: npt.NDArray[np.integer], vertices: int) -> sp.csr_array:
-    """Return which vertices share an edge, (vertices, vertices) of ones; raises `EditError` for an index outside."""
-    if len(triangles) and (triangles.min() < 0 or triangles.max() >= vertices):
-        raise EditError(f"A triangle names a vertex beyond the mesh's {vertices}.")
-    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    pairs = (np.concatenate([start, end]), np.concatenate([end, start]))
-    joined = sp.coo_array((np.ones(2 * len(start)), pairs), shape=(vertices, vertices)).tocsr()
-    joined.data[:] = 1.0
-    return joined
 
 
 def rings(triangles: npt.NDArray[np.integer], points: Array, *, size: int = 1) -> sp.csr_array:

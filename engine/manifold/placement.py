@@ -10,7 +10,8 @@ import scipy.sparse as sp
 from scipy.sparse import csgraph
 
 from engine.errors import EditError
-from engine.manifold.patches import Indices, adjacency
+from engine.manifold.patches import Indices
+from engine.mesh import adjacency
 from engine.take import Array
 from engine.words import counted
 

@@ -15,7 +15,7 @@ from safetensors.torch import save
 
 from engine import assets
 from engine.errors import AssetError
-from engine.formats.atomic import write_bytes
+from engine.formats.base.atomic import write_bytes
 
 MODELS = assets.MODELS
 VERSION = 1
@@ -115,7 +115,7 @@ def commit() -> str:
     try:
         run = subprocess.run(
             ["git", "describe", "--always", "--dirty"],
-            cwd=Path(__file__).parent,
+            cwd=assets.PACKAGE,
             capture_output=True,
             text=True,
             check=True,

@@ -7,9 +7,7 @@ from torch import Tensor, nn
 
 from engine.character import bundled
 from engine.controls import Control, Measurer
-from engine.take import SHAPE_INDEX
-
-_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
+from engine.jaw import CLOSE, JAW
 
 # The six distances of BSS20 section 3.3 and BSS20b section 3.2: lips at three places, mouth corners, both lids.
 SIX: tuple[Control, ...] = (
@@ -36,8 +34,8 @@ class Distances(nn.Module):
 
     def forward(self, weights: Tensor) -> Tensor:
         """Measure; mouthClose counts no further than the jaw is open."""
-        close = torch.minimum(weights[..., _CLOSE], weights[..., _JAW].clamp(min=0))
-        weights = torch.cat([weights[..., :_CLOSE], close[..., None], weights[..., _CLOSE + 1 :]], dim=-1)
+        close = torch.minimum(weights[..., CLOSE], weights[..., JAW].clamp(min=0))
+        weights = torch.cat([weights[..., :CLOSE], close[..., None], weights[..., CLOSE + 1 :]], dim=-1)
         moved = weights @ self.basis  # (..., controls * 3)
         vectors = moved.reshape(*moved.shape[:-1], -1, 3) + self.rest
         return torch.sqrt(vectors.square().sum(dim=-1) + 1e-6)

@@ -12,8 +12,8 @@ def _block(inputs: int, outputs: int) -> nn.Sequential:
     return nn.Sequential(nn.BatchNorm1d(inputs), nn.Conv1d(inputs, outputs, 3, padding=1), nn.ELU())
 
 
-class UNet(nn.Module):
-    """Three resolutions with skip connections."""
+class BatchNormUNet(nn.Module):
+    """Three resolutions with skip connections; `engine.regress.network.UNet` has a linear path in place of normalisation."""
 
     def __init__(self, inputs: int, outputs: int) -> None:
         super().__init__()

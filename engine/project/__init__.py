@@ -1,9 +1,10 @@
 """The `.retake` file: a performance, all that was done to it, and what people noted beside it, in one SQLite database."""
 
-from engine.formats.lock import InUseError
+from engine.formats.base.lock import InUseError
 from engine.project.claim import DisplacedError
 from engine.project.media import Found, attach, find, name_of, placed
 from engine.project.records import (
+    ALIGN,
     MARK,
     READING,
     VISEMES,
@@ -11,7 +12,6 @@ from engine.project.records import (
     Edit,
     Marks,
     Media,
-    Note,
     Pin,
     Span,
     Summary,
@@ -21,10 +21,12 @@ from engine.project.records import (
     reading_edit,
 )
 from engine.project.replaying import Before, Replayed, replay
+from engine.project.reviewing import Drawing, Note, Reply, Verdict, stamp
 from engine.project.store import ENDING, Project, create, delete, peek, recover
 from engine.project.visemes import VisemeChange, change_between, viseme_edit
 
 __all__ = [
+    "ALIGN",
     "ENDING",
     "MARK",
     "READING",
@@ -32,6 +34,7 @@ __all__ = [
     "Before",
     "Contents",
     "DisplacedError",
+    "Drawing",
     "Edit",
     "Found",
     "InUseError",
@@ -41,8 +44,10 @@ __all__ = [
     "Pin",
     "Project",
     "Replayed",
+    "Reply",
     "Span",
     "Summary",
+    "Verdict",
     "VisemeChange",
     "attach",
     "change_between",
@@ -58,5 +63,6 @@ __all__ = [
     "reading_edit",
     "recover",
     "replay",
+    "stamp",
     "viseme_edit",
 ]

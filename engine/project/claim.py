@@ -9,8 +9,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from engine.errors import EngineError
-from engine.formats.lock import FileLock
-from engine.formats.owner import boot_mark
+from engine.formats.base.lock import FileLock
+from engine.formats.base.owner import boot_mark
 
 HEAD_BYTES = 1 << 16  # of a database file: the roots of all tables, one of which each step writes, lie in them
 JOURNALS = ("-journal", "-wal")  # what SQLite would apply to the file beside it

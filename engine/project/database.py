@@ -11,8 +11,8 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 
 from engine.errors import EngineError, FormatError
-from engine.formats.content import unread
-from engine.formats.lock import InUseError
+from engine.formats.base.content import unread
+from engine.formats.base.lock import InUseError
 from engine.project import schema
 from engine.project.blobs import DamagedError
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from engine.errors import FormatError
-from engine.formats.content import require_file, unread
+from engine.formats.base.content import require_file, unread
 from engine.project.held import is_open
 from engine.project.records import Media
 

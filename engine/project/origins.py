@@ -6,20 +6,23 @@ import sqlite3
 
 import numpy as np
 
-from engine.formats.livelink_header import columns_of
-from engine.formats.livelink_origin import Origin, header_of, row_starts
+from engine.formats.livelink import packing
+from engine.formats.livelink.origin import Origin
+from engine.formats.livelink.packing import Packed
 from engine.project.blobs import Budget, DamagedError, pack, unpack, unpack_bytes
 from engine.project.tables import insert
 from engine.take import Take
 
 PIECE_BYTES = 2**26  # of text in a row of the table: SQLite takes no blob as large as a whole file may be
-MAX_HEADER_BYTES = 64 * 1024
 
 
-def write_origin(database: sqlite3.Connection, origin: Origin) -> None:
-    """Put a file beside its take."""
-    insert(database, "origin", (1, len(origin), pack(origin.rows), pack(origin.lost), int(origin.swapped)))
-    write_text(database, origin.content)
+def write_origin(database: sqlite3.Connection, take: Take) -> None:
+    """Put the file that a take came from beside it, as its format packs it; nothing where there is none."""
+    packed = packing.pack(take)
+    if packed is not None:
+        rows, lost = pack(packed.rows), pack(packed.lost)
+        insert(database, "origin", (1, len(packed.rows), rows, lost, int(packed.swapped)))
+        write_text(database, packed.content)
 
 
 def write_text(database: sqlite3.Connection, content: bytes) -> None:
@@ -42,18 +45,11 @@ def read_origin(database: sqlite3.Connection, take: Take, budget: Budget) -> Ori
         raise DamagedError("the file it came from is not possible")
     rows = unpack(blobs[0], (count,), "<i8", budget)
     lost = unpack(blobs[1], (count,), "u1", budget) != 0
-    if not (np.diff(rows) > 0).all() or rows[0] != 0 or rows[-1] != len(take) - 1:
-        raise DamagedError("its rows are out of order")
-    content = _read_text(database, budget)
+    packed = Packed(_read_text(database, budget), rows.astype(np.int64), lost, bool(swapped))
     try:
-        starts = row_starts(content, count)
-        if lost.all() or starts[0] > MAX_HEADER_BYTES:
-            raise ValueError
-        columns_of(header_of(content[: starts[0]]), take.name, swapped=bool(swapped))
+        return packing.unpack(packed, take)
     except ValueError as error:
         raise DamagedError("the file it came from is not possible") from error
-    frames = rows.astype(np.int64)
-    return Origin(content, starts, frames, lost, take.weights, take.rotations, bool(swapped))
 
 
 def _read_text(database: sqlite3.Connection, budget: Budget) -> bytes:

@@ -10,10 +10,13 @@ from typing import Any
 import numpy as np
 
 from engine.controls import ALL_CONTROLS
-from engine.formats.reading import ReadAs, Reading
+from engine.formats.base.reading import ReadAs, Reading
+from engine.project.reviewing import Note, Verdict, note_of, verdict_from
+from engine.quality.settings import Dismissal, FlagSettings
 from engine.take import SHAPES, Array, Mask, Take
 
 MARK = "mark"  # kind of an edit whose inputs are marks before and after
+ALIGN = "align"  # kind of an edit that puts the take before, not the take itself, at another time
 FILL = "fill"  # kind of an edit that gave every one of its frames motion
 VISEMES = "visemes"  # kind of an edit whose inputs are a step on the visemes lane
 SLOWEST_FPS, FASTEST_FPS = 0.01, 10_000.0
@@ -48,6 +51,11 @@ class Edit:
         """The frame after the last."""
         return self.start + len(self.weights)
 
+    @property
+    def changes_frames(self) -> bool:
+        """Whether it put other rows into the take."""
+        return self.kind != ALIGN and len(self.weights) > 0
+
     def still_lost(self, weights: Array, lost: Mask) -> Mask:
         """Return which of its frames are lost after it, (frames,), where it found these weights and these lost frames."""
         if self.lost is not None:
@@ -77,16 +85,6 @@ class Pin:
 
 
 @dataclass(frozen=True)
-class Note:
-    """A reviewer's remark on a frame; time is ISO 8601 with its zone."""
-
-    frame: int
-    author: str
-    time: str
-    text: str
-
-
-@dataclass(frozen=True)
 class Media:
     """Audio or video beside the curves.
 
@@ -106,13 +104,27 @@ class Media:
 
 @dataclass(frozen=True)
 class Marks:
-    """What people put beside the curves."""
+    """What people put beside the curves.
+
+    Attributes
+    ----------
+    verdicts : all that were given, oldest first; the last counts
+    dismissals : findings that somebody does not mind
+    flags : what is looked for
+    """
 
     spans: tuple[Span, ...] = ()
     pins: tuple[Pin, ...] = ()
     notes: tuple[Note, ...] = ()
     media: tuple[Media, ...] = ()
-    verdict: str = ""
+    verdicts: tuple[Verdict, ...] = ()
+    dismissals: tuple[Dismissal, ...] = ()
+    flags: FlagSettings = field(default_factory=FlagSettings)
+
+    @property
+    def verdict(self) -> str:
+        """The verdict that counts, with its reason; empty where there is none."""
+        return self.verdicts[-1].sentence if self.verdicts else ""
 
     def medium(self, kind: str) -> Media | None:
         """Return the sound (audio) or the reference video (video), None where there is none."""
@@ -129,10 +141,20 @@ def marks_of(stored: Mapping[str, Any]) -> Marks:
     return Marks(
         spans=tuple(Span(**entry) for entry in stored["spans"]),
         pins=tuple(Pin(**entry) for entry in stored["pins"]),
-        notes=tuple(Note(**entry) for entry in stored["notes"]),
+        notes=tuple(note_of(entry) for entry in stored["notes"]),
         media=tuple(Media(**entry) for entry in stored["media"]),
-        verdict=stored["verdict"],
+        verdicts=_verdicts_of(stored),
+        dismissals=tuple(Dismissal(**entry) for entry in stored.get("dismissals", ())),
+        flags=FlagSettings(**stored.get("flags", {})),
     )
+
+
+def _verdicts_of(stored: Mapping[str, Any]) -> tuple[Verdict, ...]:
+    if "verdicts" in stored:
+        return tuple(Verdict(**entry) for entry in stored["verdicts"])
+    if not isinstance(stored["verdict"], str):  # as projects told it that kept the last one alone
+        raise TypeError("a verdict is a text")
+    return verdict_from(stored["verdict"])
 
 
 def mark_edit(title: str, before: Marks, after: Marks) -> Edit:
@@ -180,10 +202,11 @@ class Contents:
 
 @dataclass(frozen=True)
 class Summary:
-    """What a project is, without reading all of it: the take's name, its length, edits in effect, last change."""
+    """What a project is, without reading all of it: the take's name and length, edits in effect, last change, verdict."""
 
     name: str
     frames: int
     fps: float
     edits: int
     changed: datetime
+    verdict: Verdict | None = None

@@ -14,32 +14,28 @@ import numpy as np
 from engine.controls import ALL_CONTROLS, ALL_INDEX
 from engine.errors import EngineError
 from engine.formats.livelink import MAX_COLUMNS
-from engine.formats.livelink_origin import Origin
-from engine.formats.livelink_timecode import DAY_S
+from engine.formats.livelink.timecode import DAY_S
 from engine.project.blobs import Budget, DamagedError, pack, unpack
+from engine.project.mark_rows import read_marks, read_verdict, write_marks
 from engine.project.origins import read_origin, write_origin
 from engine.project.records import (
+    ALIGN,
     MARK,
     READING,
     Contents,
     Edit,
     Marks,
-    Media,
-    Note,
-    Pin,
-    Span,
     Summary,
     marks_of,
     read_as_of,
 )
-from engine.project.soundness import MAX_MARKS, MAX_NAME, MAX_WEIGHT, moment, require, require_marks, require_visemes
-from engine.project.tables import insert
+from engine.project.soundness import MAX_NAME, MAX_WEIGHT, moment, require, require_marks, require_visemes
+from engine.project.tables import insert, one, read_json
 from engine.take import SHAPES, Array, Take
 
 MAX_FRAMES = 1_000_000  # over four hours at 60 fps
 MIN_FPS, MAX_FPS = 0.01, 10_000.0
 MAX_EDITS = 10_000_000  # they are counted against the memory, too
-JSON_BYTES = 32  # that a character of JSON may grow to when it is read
 ROTATIONS = 9
 
 
@@ -62,9 +58,9 @@ def read_contents(database: sqlite3.Connection, budget: Budget) -> Contents:
         take = _read_take(database, budget)
         edits = tuple(_read_edits(database, len(take), budget))
         require_visemes(edits)
-        position, verdict = one(database, "SELECT position, verdict FROM state")
+        (position,) = one(database, "SELECT position FROM state")
         require(0 <= position <= len(edits), "its place in the undo history is not there")
-        return Contents(take, edits, position, _read_marks(database, verdict, len(take), budget))
+        return Contents(take, edits, position, read_marks(database, len(take), budget))
     except EngineError as error:
         raise DamagedError(error.sentence.rstrip(".")) from error
 
@@ -75,7 +71,7 @@ def read_summary(database: sqlite3.Connection) -> Summary:
     position, changed = one(database, "SELECT position, changed FROM state")
     require(1 <= frames <= MAX_FRAMES and MIN_FPS <= fps <= MAX_FPS, "its length or frame rate is not possible")
     require(len(name) <= MAX_NAME, "its name is too long")
-    return Summary(name, frames, fps, position, moment(changed))
+    return Summary(name, frames, fps, position, moment(changed), read_verdict(database))
 
 
 def write_edits(database: sqlite3.Connection, first: int, edits: Iterable[Edit]) -> None:
@@ -89,32 +85,16 @@ def write_edits(database: sqlite3.Connection, first: int, edits: Iterable[Edit])
         insert(database, "edits", (place, edit.kind, edit.title, inputs, edit.start, len(edit.weights), *blobs))
 
 
-def write_marks(database: sqlite3.Connection, marks: Marks) -> None:
-    """Put spans, pins, notes and media in place of those that are there."""
-    tables: dict[str, list[tuple[object, ...]]] = {
-        "spans": [(span.start, span.stop, span.region, span.kind) for span in marks.spans],
-        "pins": [(pin.frame, json.dumps(dict(pin.weights)), pin.start, pin.stop) for pin in marks.pins],
-        "notes": [(note.frame, note.author, note.time, note.text) for note in marks.notes],
-        "media": [(media.kind, media.path, media.sha256, media.offset_s) for media in marks.media],
-    }
-    for table, rows in tables.items():
-        database.execute(f"DELETE FROM {table}")
-        database.executemany(
-            f"INSERT INTO {table} VALUES (?, ?, ?, ?, ?)", [(place, *row) for place, row in enumerate(rows)]
-        )
-
-
 def write_state(database: sqlite3.Connection, contents: Contents) -> None:
-    """Write the place in the undo history, the verdict, and that it is so from now on."""
-    row = contents.position, contents.marks.verdict, datetime.now(UTC).isoformat(timespec="seconds")
-    database.execute("INSERT OR REPLACE INTO state VALUES (1, ?, ?, ?)", row)
+    """Write the place in the undo history, and that it is so from now on."""
+    row = contents.position, datetime.now(UTC).isoformat(timespec="seconds")
+    database.execute("INSERT OR REPLACE INTO state VALUES (1, ?, ?)", row)
 
 
 def _write_take(database: sqlite3.Connection, take: Take) -> None:
     blobs = pack(take.weights), pack(take.lost), pack(take.rotations)
     insert(database, "take", (1, take.name, take.fps, take.start_s, len(take), *blobs))
-    if isinstance(take.origin, Origin) and take.origin.fits(take) and np.array_equal(take.origin.weights, take.weights):
-        write_origin(database, take.origin)
+    write_origin(database, take)
 
 
 def _read_take(database: sqlite3.Connection, budget: Budget) -> Take:
@@ -145,11 +125,12 @@ def _read_edits(database: sqlite3.Connection, length: int, budget: Budget) -> It
         require(place == index and start >= 0 and 0 <= frames <= length - start, "an edit is out of place")
         rows = unpack(weights, (frames, len(SHAPES)), "<f8", budget)
         require(_possible(rows), "an edit holds a weight that is not a finite number")
-        made_from = _json(inputs, budget)
+        made_from = read_json(inputs, budget)
         require(isinstance(made_from, dict), "an edit does not say what it was made from")
         if kind == MARK:
             for marks in ("before", "after"):
                 require_marks(_marks_in(made_from, marks), length)
+        require(kind != ALIGN or frames == length, "the take before is not whole")
         if kind == READING:
             _require_readings(made_from)
         asked_rows = _read_asked(asked, _texts(controls, budget), frames, budget)
@@ -170,24 +151,6 @@ def _read_asked(blob: object, names: tuple[str, ...], frames: int, budget: Budge
     return asked
 
 
-def _read_marks(database: sqlite3.Connection, verdict: str, length: int, budget: Budget) -> Marks:
-    def rows(columns: str, table: str) -> list[Any]:
-        return database.execute(f"SELECT {columns} FROM {table} ORDER BY place LIMIT {MAX_MARKS + 1}").fetchall()
-
-    marks = Marks(
-        spans=tuple(Span(*row) for row in rows("start, stop, region, kind", "spans")),
-        pins=tuple(
-            Pin(frame, _json(weights, budget), start, stop)
-            for frame, weights, start, stop in rows("frame, weights, start, stop", "pins")
-        ),
-        notes=tuple(Note(*row) for row in rows("frame, author, time, text", "notes")),
-        media=tuple(Media(*row) for row in rows("kind, path, sha256, offset_s", "media")),
-        verdict=verdict,
-    )
-    require_marks(marks, length)
-    return marks
-
-
 def _marks_in(inputs: dict[str, Any], name: str) -> Marks:
     try:
         return marks_of(inputs[name])
@@ -204,25 +167,10 @@ def _require_readings(inputs: dict[str, Any]) -> None:
 
 
 def _texts(text: str, budget: Budget) -> tuple[str, ...]:
-    names = _json(text, budget)
+    names = read_json(text, budget)
     require(isinstance(names, list) and all(isinstance(name, str) for name in names), "a list of names is damaged")
     require(len(names) <= MAX_COLUMNS, "a list of names is too long")
     return tuple(names)
-
-
-def _json(text: str, budget: Budget) -> Any:
-    budget.take(JSON_BYTES * len(text))
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError, MemoryError) as error:
-        raise DamagedError("a setting cannot be read") from error
-
-
-def one(database: sqlite3.Connection, query: str) -> Any:
-    """Return the one row of a query; raises `DamagedError` when there is none."""
-    row = database.execute(query).fetchone()
-    require(row is not None, "a part of it is missing")
-    return row
 
 
 def _plain(value: object) -> object:

@@ -9,7 +9,7 @@ from engine.errors import FormatError
 from engine.project.migrating import text_from_values
 
 APPLICATION_ID = 0x52544B45  # RTKE
-VERSION = 3
+VERSION = 4
 NOT_OURS = "Open a .retake file, or a take."
 DAMAGED = "Open an older copy of it, or the take itself."
 MAX_TABLES = 64
@@ -77,9 +77,35 @@ _EDITS = """CREATE TABLE edits (
   weights BLOB NOT NULL, controls TEXT NOT NULL, asked BLOB NOT NULL, lost BLOB
 ) STRICT"""
 
+_NOTES = """CREATE TABLE notes (
+  place INTEGER PRIMARY KEY,
+  frame INTEGER NOT NULL, author TEXT NOT NULL, time TEXT NOT NULL, text TEXT NOT NULL,
+  frames INTEGER NOT NULL, region TEXT NOT NULL, replies TEXT NOT NULL,
+  resolved_by TEXT NOT NULL, resolved_at TEXT NOT NULL, drawing TEXT NOT NULL
+) STRICT"""
+_VERDICTS = """CREATE TABLE verdicts (
+  place INTEGER PRIMARY KEY,
+  judgement TEXT NOT NULL, why TEXT NOT NULL, author TEXT NOT NULL, time TEXT NOT NULL
+) STRICT"""
+_DISMISSALS = """CREATE TABLE dismissals (
+  place INTEGER PRIMARY KEY,
+  kind TEXT NOT NULL, start INTEGER NOT NULL, stop INTEGER NOT NULL, weight REAL NOT NULL, sentence TEXT NOT NULL,
+  author TEXT NOT NULL, time TEXT NOT NULL, why TEXT NOT NULL
+) STRICT"""
+_FLAGS = """CREATE TABLE flags (
+  place INTEGER PRIMARY KEY,
+  kind TEXT NOT NULL, counts INTEGER, threshold REAL
+) STRICT"""
+_POSITION = """CREATE TABLE state (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  position INTEGER NOT NULL, changed TEXT NOT NULL
+) STRICT"""
+
 _SECOND = {**_FIRST, "pins": _PINS, "media": _MEDIA, "state": _STATE}
 _THIRD = {**_SECOND, "origin": _ORIGIN, "origin_text": _TEXT, "edits": _EDITS}
-SCHEMAS: dict[int, dict[str, str]] = {1: _FIRST, 2: _SECOND, 3: _THIRD}
+_REVIEWED = {"notes": _NOTES, "verdicts": _VERDICTS, "dismissals": _DISMISSALS, "flags": _FLAGS, "state": _POSITION}
+_FOURTH = {**_THIRD, **_REVIEWED}
+SCHEMAS: dict[int, dict[str, str]] = {1: _FIRST, 2: _SECOND, 3: _THIRD, 4: _FOURTH}
 # From each version to the next. A table is made anew and never altered, so that its text is that of a new file.
 MIGRATIONS: dict[int, tuple[str | Callable[[sqlite3.Connection], None], ...]] = {
     1: (
@@ -103,6 +129,21 @@ MIGRATIONS: dict[int, tuple[str | Callable[[sqlite3.Connection], None], ...]] = 
         _TEXT,
         text_from_values,
         "DROP TABLE origin_2",
+    ),
+    3: (
+        "ALTER TABLE notes RENAME TO notes_3",
+        _NOTES,
+        "INSERT INTO notes SELECT place, frame, author, time, text, 1, 'face', '[]', '', '', 'null' FROM notes_3",
+        "DROP TABLE notes_3",
+        _VERDICTS,
+        _DISMISSALS,
+        _FLAGS,
+        "INSERT INTO verdicts SELECT 0, substr(verdict, 1, instr(verdict || ': ', ': ') - 1), "
+        "substr(verdict, instr(verdict || ': ', ': ') + 2), '', '' FROM state WHERE verdict <> ''",
+        "ALTER TABLE state RENAME TO state_3",
+        _POSITION,
+        "INSERT INTO state SELECT id, position, changed FROM state_3",
+        "DROP TABLE state_3",
     ),
 }
 

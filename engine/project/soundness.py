@@ -7,8 +7,10 @@ from collections.abc import Iterable
 from datetime import UTC, datetime
 
 from engine.project.blobs import DamagedError
-from engine.project.records import Edit, Marks, Media, Note, Pin, Span
+from engine.project.records import Edit, Marks, Media, Pin, Span
 from engine.project.replaying import said
+from engine.project.reviewing import Drawing, Note, Reply, Verdict
+from engine.quality.settings import Dismissal, FlagSettings
 from engine.take import SHAPE_INDEX
 
 MAX_WEIGHT = 1e6
@@ -17,6 +19,11 @@ MAX_MARKS = 1_000_000  # of each kind: as many as a take has frames, since whate
 MAX_TEXT = 100_000_000  # characters of a note
 MAX_NAME = 100_000  # characters of a name, a title, a path or a time: a line that is typed holds a third of it
 MIN_YEAR, MAX_YEAR = 1900, 9000  # beyond these a time zone may lead out of the calendar
+MAX_REPLIES = 10_000  # to a note
+MAX_POINTS = 1_000_000  # of a drawing
+MAX_PLACE = 1e6  # of a camera, a point or a threshold
+CAMERA_NUMBERS = (0, 5, 7)  # none told, the whole head, a part of it
+MAX_KINDS = 10_000  # of flags
 MEDIA_KINDS = ("audio", "video")
 
 
@@ -28,13 +35,23 @@ def require(sound: bool, what: str) -> None:
 
 def require_marks(marks: Marks, length: int) -> None:
     """Raise `DamagedError` where one of the marks cannot belong to a take of so many frames."""
-    for held, what in ((marks.spans, "spans"), (marks.pins, "pins"), (marks.notes, "notes"), (marks.media, "media")):
+    for what in ("spans", "pins", "notes", "media", "verdicts", "dismissals"):
+        held = getattr(marks, what)
         require(len(held) <= MAX_MARKS, f"it has {len(held):,} {what}, and Retake reads at most {MAX_MARKS:,}")
     require(all(_is_span(span, length) for span in marks.spans), "a span is not within the take")
     require(all(_is_pin(pin, length) for pin in marks.pins), "a pin is not within the take, or holds no pose")
     require(all(_is_note(note, length) for note in marks.notes), "a note is not within the take, or no text")
     require(all(_is_medium(media) for media in marks.media), "a sound or video is not described, or begins at no time")
-    require(_is_text(marks.verdict), "the verdict is none")
+    for verdict in marks.verdicts:
+        require_verdict(verdict)
+    require(all(_is_dismissal(each, length) for each in marks.dismissals), "a finding that was dismissed is none")
+    require(_are_settings(marks.flags), "a threshold of a flag is none")
+
+
+def require_verdict(verdict: Verdict) -> None:
+    """Raise `DamagedError` for a verdict that is none."""
+    texts = verdict.judgement, verdict.author, verdict.time
+    require(all(_is_text(text) for text in texts) and _is_text(verdict.why, MAX_TEXT), "the verdict is none")
 
 
 def require_visemes(edits: tuple[Edit, ...]) -> None:
@@ -68,8 +85,40 @@ def _is_pin(pin: Pin, length: int) -> bool:
 
 
 def _is_note(note: Note, length: int) -> bool:
-    inside = _are_frames((note.frame,)) and 0 <= note.frame < length
-    return inside and _is_text(note.text, MAX_TEXT) and _is_text(note.author) and _is_text(note.time)
+    if not (_are_frames((note.frame, note.frames)) and 0 <= note.frame < note.stop <= length):
+        return False
+    texts = note.author, note.time, note.region, note.resolved_by, note.resolved_at
+    told = _is_text(note.text, MAX_TEXT) and all(_is_text(text) for text in texts)
+    return told and len(note.replies) <= MAX_REPLIES and all(map(_is_reply, note.replies)) and _is_drawing(note.drawing)
+
+
+def _is_reply(reply: Reply) -> bool:
+    return _is_text(reply.text, MAX_TEXT) and _is_text(reply.author) and _is_text(reply.time)
+
+
+def _is_drawing(drawing: Drawing | None) -> bool:
+    if drawing is None:
+        return True
+    points = [point for stroke in drawing.strokes for point in stroke]
+    camera = len(drawing.camera) in CAMERA_NUMBERS and all(_is_number(value, MAX_PLACE) for value in drawing.camera)
+    placed = (len(point) == 2 and all(_is_number(value, MAX_PLACE) for value in point) for point in points)
+    return camera and len(points) <= MAX_POINTS and all(placed)
+
+
+def _is_dismissal(each: Dismissal, length: int) -> bool:
+    texts = all(_is_text(text) for text in (each.kind, each.sentence, each.author, each.time, each.why))
+    whole = _are_frames((each.start, each.stop)) and 0 <= each.start < each.stop <= length
+    return texts and whole and _is_number(each.weight, 1.0)
+
+
+def _are_settings(settings: FlagSettings) -> bool:
+    if not (isinstance(settings.counts, dict) and isinstance(settings.thresholds, dict)):
+        return False
+    if len(settings.counts) + len(settings.thresholds) > MAX_KINDS:
+        return False
+    names = all(_is_text(name) for name in (*settings.counts, *settings.thresholds))
+    counts = all(isinstance(value, bool) for value in settings.counts.values())
+    return names and counts and all(_is_number(value, MAX_PLACE) for value in settings.thresholds.values())
 
 
 def _is_medium(media: Media) -> bool:

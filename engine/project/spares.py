@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from engine.errors import EngineError
-from engine.formats.owner import owner_mark, owner_runs
+from engine.formats.base.owner import owner_mark, owner_runs
 
 log = logging.getLogger(__name__)
 ENDING = ".spare"

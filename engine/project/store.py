@@ -10,12 +10,13 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 from engine.errors import EngineError, FormatError
-from engine.formats.atomic import replacement, sweep, unwritten
-from engine.formats.content import require_file
+from engine.formats.base.atomic import replacement, sweep, unwritten
+from engine.formats.base.content import require_file
 from engine.project import held, rows, schema, spares
 from engine.project.blobs import Budget
 from engine.project.claim import JOURNALS, Claim, belongs, head_of, is_hot
 from engine.project.database import BESIDE, connect, copied, keep_safe, scrap, sentences, settle
+from engine.project.mark_rows import write_marks
 from engine.project.records import Contents, Summary
 
 ENDING = ".retake"
@@ -90,7 +91,7 @@ class Project:
         with self._transaction() as database:
             rows.write_edits(database, same, contents.edits[same:])
             if contents.marks != old.marks:
-                rows.write_marks(database, contents.marks)
+                write_marks(database, contents.marks)
             rows.write_state(database, contents)
         self._contents = contents
 

@@ -1,9 +1,15 @@
-"""Writing rows whose blobs are too large to be held twice."""
+"""Rows of a project file: blobs too large to be held twice, JSON that is checked, rows that must be there."""
 
 from __future__ import annotations
 
+import json
 import sqlite3
 from collections.abc import Sequence
+from typing import Any
+
+from engine.project.blobs import Budget, DamagedError
+
+JSON_BYTES = 32  # that a character of JSON may grow to when it is read
 
 
 def insert(database: sqlite3.Connection, table: str, row: Sequence[object]) -> None:
@@ -17,3 +23,20 @@ def insert(database: sqlite3.Connection, table: str, row: Sequence[object]) -> N
             with database.blobopen(table, column, row[0]) as blob:  # type: ignore[arg-type]
                 for piece in value:
                     blob.write(piece)
+
+
+def one(database: sqlite3.Connection, query: str) -> Any:
+    """Return the one row of a query; raises `DamagedError` when there is none."""
+    row = database.execute(query).fetchone()
+    if row is None:
+        raise DamagedError("a part of it is missing")
+    return row
+
+
+def read_json(text: str, budget: Budget) -> Any:
+    """Return what a text of JSON holds; raises `DamagedError` for one that cannot be read."""
+    budget.take(JSON_BYTES * len(text))
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise DamagedError("a setting cannot be read") from error

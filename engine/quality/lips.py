@@ -8,16 +8,15 @@ import numpy as np
 
 from engine.anatomy import Indices
 from engine.controls import CONTROL_INDEX
+from engine.jaw import excess
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen, lowest
 from engine.quality.tuning import TUNING
 from engine.speech.visemes import NAMES
-from engine.take import SHAPE_INDEX, Mask, runs
+from engine.take import Mask, runs
 
-_T = TUNING
 LIPS = CONTROL_INDEX["lips_vertical"]
 _MBP, _FV = NAMES.index("mbp"), NAMES.index("fv")
-_CLOSE, _JAW = SHAPE_INDEX["mouthClose"], SHAPE_INDEX["jawOpen"]
 
 
 def stay_open(seen: Seen, low: int, high: int) -> Iterator[Flag]:
@@ -25,32 +24,34 @@ def stay_open(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     lips = seen.controls[:, LIPS]
     said, labels = _said(seen, _MBP)
     for (start, stop), nearest, label in zip(said.tolist(), lowest(lips, said), labels, strict=True):
-        if nearest > _T.closed_mm:
+        if nearest > seen.tuning.closed_mm:
             text = f"The lips stay {nearest:.1f} mm apart where {label} is said."
-            yield Flag("open", start, stop, weight_of(nearest, _T.closed_mm, _T.full_gap_mm), text)
+            yield Flag("open", start, stop, weight_of(nearest, seen.tuning.closed_mm, seen.tuning.full_gap_mm), text)
     met = _met(seen)
     for (start, stop), nearest in zip(met.tolist(), lowest(lips, met), strict=True):
-        if nearest > _T.closed_mm:
+        if nearest > seen.tuning.closed_mm:
             text = f"The lips met here before the edits and now stay {nearest:.1f} mm apart."
-            yield Flag("open", start, stop, weight_of(nearest, _T.closed_mm, _T.full_gap_mm), text)
+            yield Flag("open", start, stop, weight_of(nearest, seen.tuning.closed_mm, seen.tuning.full_gap_mm), text)
 
 
 def off_teeth(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield each F and V through which the lips stay too far apart for the lower one to touch the teeth."""
     said, labels = _said(seen, _FV)
     for (start, stop), nearest, label in zip(said.tolist(), lowest(seen.controls[:, LIPS], said), labels, strict=True):
-        if nearest > _T.teeth_mm:
+        if nearest > seen.tuning.teeth_mm:
             text = f"The lips stay {nearest:.1f} mm apart where {label} is said: the lip does not reach the teeth."
-            yield Flag("teeth", start, stop, weight_of(nearest, _T.teeth_mm, _T.full_teeth_mm), text)
+            yield Flag("teeth", start, stop, weight_of(nearest, seen.tuning.teeth_mm, seen.tuning.full_teeth_mm), text)
 
 
 def close_above_jaw(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames on which mouthClose is above jawOpen: some characters press the lips through each other there."""
-    beyond = seen.weights[low:high, _CLOSE] - np.maximum(seen.weights[low:high, _JAW], 0.0)
-    for start, stop in runs((beyond > _T.above_jaw) & seen.kept[low:high]):
+    beyond = excess(seen.weights[low:high])
+    for start, stop in runs((beyond > seen.tuning.above_jaw) & seen.kept[low:high]):
         most = float(beyond[start:stop].max())
         text = f"mouthClose is {most:.2f} above jawOpen: on some characters the lips close too far."
-        yield Flag("close", low + start, low + stop, weight_of(most, _T.above_jaw, _T.full_above_jaw), text)
+        yield Flag(
+            "close", low + start, low + stop, weight_of(most, seen.tuning.above_jaw, seen.tuning.full_above_jaw), text
+        )
 
 
 def _said(seen: Seen, viseme: int) -> tuple[Indices, list[str]]:
@@ -70,8 +71,8 @@ def _met(seen: Seen) -> Indices:
     """Return where the lips met briefly as the take was opened and nobody has asked anything of them since, (n, 2)."""
     if seen.original_controls is None:
         return np.zeros((0, 2), np.int64)
-    met = np.array(runs(seen.original_controls[:, LIPS] < _T.closed_mm), np.int64).reshape(-1, 2)
+    met = np.array(runs(seen.original_controls[:, LIPS] < TUNING.closed_mm), np.int64).reshape(-1, 2)
     settled: Mask = seen.lost if seen.asked is None else seen.lost | ~np.isnan(seen.asked[:, LIPS])
     before = np.append(0, np.cumsum(settled))
     free = before[met[:, 1]] == before[met[:, 0]]
-    return np.asarray(met[free & (np.diff(met, axis=1)[:, 0] <= _T.brief_s * seen.fps)])
+    return np.asarray(met[free & (np.diff(met, axis=1)[:, 0] <= seen.tuning.brief_s * seen.fps)])

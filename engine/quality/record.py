@@ -23,7 +23,7 @@ class Flag:
 
 def weight_of(amount: float, least: float, full: float) -> float:
     """Return the weight of a finding that is `LEAST` at the threshold, 1 at `full` and beyond."""
-    share = (amount - least) / (full - least)
+    share = (amount - least) / (full - least) if full > least else 1.0
     # Rounded, so that it is the same whether curves were measured whole or in parts.
     return round(float(min(1.0, LEAST + (1 - LEAST) * share)), 9)
 

@@ -12,7 +12,7 @@ from engine.controls import CONTROL_INDEX
 from engine.errors import EditError
 from engine.extended import bundled_face
 from engine.formats.audio import Audio
-from engine.quality.tuning import TUNING
+from engine.quality.tuning import TUNING, Tuning
 from engine.speech.lane import VisemeLane
 from engine.take import Array, Mask, Take
 from engine.words import counted
@@ -53,6 +53,7 @@ class Seen:
     original_weights : (frames, 52) before any edit; None without one
     rotations : (frames, 3) radians, yaw, pitch and roll of the head; None where it was not recorded
     sound : what is heard; None without sound
+    tuning : the thresholds that count
     """
 
     weights: Array
@@ -65,6 +66,7 @@ class Seen:
     original_weights: Array | None = None
     rotations: Array | None = None
     sound: Sound | None = None
+    tuning: Tuning = TUNING
 
     @cached_property
     def length(self) -> int:
@@ -80,7 +82,7 @@ class Seen:
     def blinks(self) -> tuple[Array, Array]:
         """The gap of the wider open lids, (frames,) mm, and the drops of that curve."""
         gap = rounded(np.max([self.controls[:, control] for control in LIDS.values()], axis=0))
-        return gap, drops(gap, self.frames(TUNING.blink_within_s))
+        return gap, drops(gap, self.frames(self.tuning.blink_within_s))
 
     def frames(self, seconds: float) -> int:
         """Return the number of frames that a time lasts, at least one."""

@@ -9,10 +9,7 @@ import numpy as np
 from engine.quality.lips import LIPS
 from engine.quality.record import Flag, weight_of
 from engine.quality.seen import Seen
-from engine.quality.tuning import TUNING
 from engine.take import Array
-
-_T = TUNING
 
 
 def short(seen: Seen, low: int, high: int) -> Iterator[Flag]:
@@ -20,9 +17,9 @@ def short(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     if seen.sound is None:
         return
     missing_s = seen.sound.offset_s + seen.sound.duration_s - seen.length / seen.fps
-    if missing_s > _T.short_s:
+    if missing_s > seen.tuning.short_s:
         text = f"The sound goes on for {missing_s:.2f} s after the take ends."
-        weight = weight_of(missing_s, _T.short_s, _T.full_short_s)
+        weight = weight_of(missing_s, seen.tuning.short_s, seen.tuning.full_short_s)
         yield Flag("short", seen.length - 1, seen.length, weight, text)
 
 
@@ -32,10 +29,14 @@ def out_of_step(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     if found is None:
         return
     offset_s, best, none = found
-    if abs(offset_s) > _T.out_of_step_s and best > _T.step_correlation and best - none > _T.step_gain:
+    if (
+        abs(offset_s) > seen.tuning.out_of_step_s
+        and best > seen.tuning.step_correlation
+        and best - none > seen.tuning.step_gain
+    ):
         way = "after" if offset_s > 0 else "before"
         text = f"The lips move {abs(offset_s):.2f} s {way} the sound (correlation {best:.2f}, {none:.2f} as it is)."
-        weight = weight_of(abs(offset_s), _T.out_of_step_s, _T.full_out_of_step_s)
+        weight = weight_of(abs(offset_s), seen.tuning.out_of_step_s, seen.tuning.full_out_of_step_s)
         yield Flag("sound", 0, seen.length, weight, text)
 
 
@@ -49,12 +50,12 @@ def offset_of(seen: Seen) -> tuple[float, float, float] | None:
         return None
     begin = round(seen.sound.offset_s * seen.fps)
     first, last = max(0, begin), min(seen.length, begin + len(seen.sound.loudness))
-    if last - first < _T.step_least_s * seen.fps:
+    if last - first < seen.tuning.step_least_s * seen.fps:
         return None
     loud = seen.sound.loudness[first - begin : last - begin]
     loud = np.log(loud + 1e-2 * max(float(loud.max()), 1e-9))
     lips = seen.controls[first:last, LIPS]
-    return _best_lag(lips, loud, seen.frames(_T.step_range_s), seen.fps)
+    return _best_lag(lips, loud, seen.frames(seen.tuning.step_range_s), seen.fps)
 
 
 def _best_lag(lips: Array, loud: Array, furthest: int, fps: float) -> tuple[float, float, float] | None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -11,7 +13,6 @@ from engine.quality.seen import Seen, strengths
 from engine.quality.tuning import TUNING
 from engine.take import SHAPES, Array, Mask, runs
 
-_T = TUNING
 # Gaze and lids step within a frame in any recording (saccades, blinks), and a tongue is out or in.
 _STEADY = np.array([not name.startswith("eye") and name != "tongueOut" for name in SHAPES])
 _WHITE = np.sqrt(70)  # the fourth difference of white noise has 70 x its variance
@@ -21,7 +22,7 @@ def lost(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield runs for which the tracker had no face."""
     for start, stop in runs(seen.lost[low:high]):
         text = f"The tracker had no face for {lasting(stop - start, seen.fps)}; the curves are guessed here."
-        weight = weight_of((stop - start) / seen.fps, 0.0, _T.full_loss_s)
+        weight = weight_of((stop - start) / seen.fps, 0.0, seen.tuning.full_loss_s)
         yield Flag("lost", low + start, low + stop, weight, text)
 
 
@@ -30,6 +31,11 @@ def repeats(weights: Array, kept: Mask) -> Mask:
     same = np.zeros(len(weights), bool)
     same[1:] = kept[1:] & kept[:-1] & (weights[1:] == weights[:-1]).all(axis=1)
     return same
+
+
+def least_repeats(seen: Seen) -> int:
+    """Return how many frames like the one before make a freeze."""
+    return max(2, math.ceil(seen.tuning.least_freeze_s * seen.fps - 1e-6))
 
 
 def frozen(seen: Seen, low: int, high: int) -> Iterator[Flag]:
@@ -41,14 +47,22 @@ def frozen(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         same[at] = weights[at].any(axis=1)
         return np.asarray(same, float)
 
+    least = least_repeats(seen)
     for start, stop in runs(strengths(seen, low, high, reach=1, verdict=verdict) > 0):
-        if stop - start >= _T.repeats:
+        if stop - start >= least:
             text = f"The face does not move at all for {lasting(stop - start + 1, seen.fps)}."
-            weight = weight_of((stop - start) / seen.fps, 0.0, _T.full_freeze_s)
+            weight = weight_of((stop - start) / seen.fps, 0.0, seen.tuning.full_freeze_s)
             yield Flag("frozen", low + start, low + stop, weight, text)
 
 
-def leaps(weights: Array, kept: Mask, *, least: float = _T.leap, quiet: float | None = _T.leap_quiet) -> Array:
+def leaps(
+    weights: Array,
+    kept: Mask,
+    *,
+    least: float = TUNING.leap,
+    quiet: float | None = TUNING.leap_quiet,
+    returns: float = TUNING.returns,
+) -> Array:
     """Return how far the shape that leaps furthest for a single frame does, (frames,); 0 where none leaps and returns.
 
     A peak of three frames is an articulation: on the frames beside a leap the shape moves by far less than the leap.
@@ -57,13 +71,14 @@ def leaps(weights: Array, kept: Mask, *, least: float = _T.leap, quiet: float | 
     ----------
     least : weight; smaller leaps are none
     quiet : share of the leap by which the shape may move on the frames beside it; None lets it move
+    returns : weight; farther from where it was it has not come back
     """
     found = np.zeros(len(weights))
     if len(weights) < 3:
         return found
     before, now, after = weights[:-2], weights[1:-1], weights[2:]
     leap = np.abs(now - (after + before) / 2)
-    leap[(leap <= least) | (np.abs(after - before) >= _T.returns)] = 0.0
+    leap[(leap <= least) | (np.abs(after - before) >= returns)] = 0.0
     for at in np.flatnonzero(leap.any(axis=1)) if quiet is not None else ():  # few
         earlier, later = weights[max(0, int(at) - 1)], weights[min(len(weights) - 1, int(at) + 3)]
         beside = np.maximum(np.abs(before[at] - earlier), np.abs(later - after[at]))
@@ -74,27 +89,29 @@ def leaps(weights: Array, kept: Mask, *, least: float = _T.leap, quiet: float | 
 
 def spikes(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames on which a shape leaps and comes back."""
-    leap = strengths(seen, low, high, reach=2, verdict=leaps)
+    tuning = seen.tuning
+    told = partial(leaps, least=tuning.leap, quiet=tuning.leap_quiet, returns=tuning.returns)
+    leap = strengths(seen, low, high, reach=2, verdict=told)
     for start, stop in runs(leap > 0):
         furthest = float(leap[start:stop].max())
         text = f"A shape leaps by {furthest:.2f} for a single frame and comes back."
-        yield Flag("spike", low + start, low + stop, weight_of(furthest, _T.leap, _T.full_leap), text)
+        yield Flag("spike", low + start, low + stop, weight_of(furthest, seen.tuning.leap, seen.tuning.full_leap), text)
 
 
 def pops(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield steps of a shape between two stretches on which it hardly moves."""
-    beside = max(2, round(_T.pop_beside_s * seen.fps))
+    beside = max(2, round(seen.tuning.pop_beside_s * seen.fps))
 
     def verdict(weights: Array, kept: Mask) -> Array:
         found = np.zeros(len(weights))
         step = np.abs(np.diff(weights, axis=0, prepend=weights[:1]))  # of a frame from the one before
         step[:, ~_STEADY] = 0.0
-        for at in np.flatnonzero((step > _T.pop).any(axis=1)):
+        for at in np.flatnonzero((step > seen.tuning.pop).any(axis=1)):
             first, last = at - beside, at + beside + 1
             if first < 1 or last > len(weights) or not kept[first - 1 : last].all():
                 continue
             near = np.maximum(step[first:at].max(axis=0), step[at + 1 : last].max(axis=0))
-            popped = (step[at] > _T.pop) & (near < _T.pop_quiet * step[at])
+            popped = (step[at] > seen.tuning.pop) & (near < seen.tuning.pop_quiet * step[at])
             found[at] = step[at][popped].max(initial=0.0)
         return found
 
@@ -102,12 +119,12 @@ def pops(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     for start, stop in runs(step > 0):
         furthest = float(step[start:stop].max())
         text = f"A shape steps by {furthest:.2f} from one frame to the next and stays there."
-        yield Flag("pop", low + start, low + stop, weight_of(furthest, _T.pop, _T.full_pop), text)
+        yield Flag("pop", low + start, low + stop, weight_of(furthest, seen.tuning.pop, seen.tuning.full_pop), text)
 
 
-def jitter_block(fps: float) -> int:
+def jitter_block(seen: Seen) -> int:
     """Return the frames of a stretch that is judged as one."""
-    return max(6, round(_T.jitter_s * fps))
+    return max(6, round(seen.tuning.jitter_s * seen.fps))
 
 
 def jitter(seen: Seen, low: int, high: int) -> Iterator[Flag]:
@@ -116,7 +133,7 @@ def jitter(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     With d4 and d1 the fourth and first difference, each divided by what it is for white noise of deviation 1, a shape
     trembles where |d4| is above the threshold on most frames and the mean |d4| is a large share of the mean |d1|.
     """
-    size = jitter_block(seen.fps)
+    size = jitter_block(seen)
     first, last = low // size, min(-(-high // size), seen.length // size)
     level = np.zeros(max(0, last - first))
     for begin in range(first, last, 64):
@@ -126,7 +143,9 @@ def jitter(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     for start, stop in runs(frames > 0):
         worst = float(frames[start:stop].max())
         text = f"A shape trembles by {worst:.3f} from frame to frame for {lasting(stop - start, seen.fps)}."
-        yield Flag("jitter", low + start, low + stop, weight_of(worst, _T.jitter, _T.full_jitter), text)
+        yield Flag(
+            "jitter", low + start, low + stop, weight_of(worst, seen.tuning.jitter, seen.tuning.full_jitter), text
+        )
 
 
 def _trembling(seen: Seen, begin: int, end: int, size: int) -> Array:
@@ -139,7 +158,7 @@ def _trembling(seen: Seen, begin: int, end: int, size: int) -> Array:
     at = first + 2 - start
     rough[at : at + len(fourth)] = np.abs(fourth, out=fourth)
     blocks = rough.reshape(end - begin, size, -1)
-    many: Mask = np.asarray((blocks > _T.jitter * _WHITE).sum(axis=1) >= _T.jitter_share * size)
+    many: Mask = np.asarray((blocks > seen.tuning.jitter * _WHITE).sum(axis=1) >= seen.tuning.jitter_share * size)
     whole: Mask = np.asarray(seen.kept[start:stop].reshape(end - begin, size).all(axis=1))
     many &= whole[:, None]
     found = np.zeros(end - begin)
@@ -147,7 +166,7 @@ def _trembling(seen: Seen, begin: int, end: int, size: int) -> Array:
         here = seen.weights[start + block * size : start + (block + 1) * size]
         noise = blocks[block].mean(axis=0) / _WHITE
         motion = np.abs(np.diff(here, axis=0)).mean(axis=0) / np.sqrt(2)
-        trembles = many[block] & (noise > _T.jitter_ratio * motion)
+        trembles = many[block] & (noise > seen.tuning.jitter_ratio * motion)
         # the mean of |x| is 0.8 deviations of x
         found[block] = (noise[trembles] / 0.8).max(initial=0.0)
     return found
@@ -168,7 +187,9 @@ def head(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         kept = seen.kept[first:last]
         found[2:-1] = beyond.max(axis=1) * (kept[:-3] & kept[1:-2] & kept[2:-1] & kept[3:])
     found = found[low - first : high - first]
-    for start, stop in runs(found > _T.jump_deg):
+    for start, stop in runs(found > seen.tuning.jump_deg):
         furthest = float(found[start:stop].max())
         text = f"The head jumps by {furthest:.0f} degrees from one frame to the next."
-        yield Flag("head", low + start, low + stop, weight_of(furthest, _T.jump_deg, _T.full_jump_deg), text)
+        yield Flag(
+            "head", low + start, low + stop, weight_of(furthest, seen.tuning.jump_deg, seen.tuning.full_jump_deg), text
+        )

@@ -20,7 +20,9 @@ class Tuning:
     returns: float = 0.05  # weight
     leap_quiet: float = 0.4  # share of the leap [.4 .. none]; false 18 -> 0
     full_leap: float = 0.5
-    repeats: int = 2  # frames like the one before; a single one is what a source of another rate leaves behind
+    # seconds of frames like the one before; a single one is what a source of another rate leaves behind, and hand
+    # animation holds a pose for up to .13 s
+    least_freeze_s: float = 0.15
     full_freeze_s: float = 0.5
     full_loss_s: float = 1.0
     # A shape jitters where the deviation of its noise, told by fourth differences, is above `jitter` on a share of the
@@ -47,6 +49,9 @@ class Tuning:
     # A blink is a lid that falls and rises, each by `blink_drop_mm` within `blink_within_s`.
     blink_drop_mm: float = 2.0  # mm [2 .. 4]; unclosed 36 of 40, at 3.5 28; false 3, at 3.5 1
     blink_within_s: float = 0.2  # seconds
+    blink_share: float = (
+        0.45  # of the way to shut that a lid falls in a blink; less is a flutter [0 .. .6]; false 2 -> 0
+    )
     unclosed_mm: float = 3.0  # mm between the lids at the bottom [2.5 .. 4]; 36 of 40, at 3.5 34
     unlike_mm: float = 3.0  # mm more than at the bottom of the middle blink [1.5 .. 3]; false 7 -> 2, 35 of 40 (36)
     shut_mm: float = 1.5  # mm; lids that come nearer are shut
@@ -60,9 +65,17 @@ class Tuning:
     unblinking_s: float = 20.0  # seconds without a blink [15 .. 25]; no false one, the longest recorded is 12 s
     full_unblinking_s: float = 60.0
     both: float = 0.5  # weight of two excluding shapes [.4 .. .7]; false 6 -> 3, at .6 only 23 of 40
+    both_wide: float = (
+        0.65  # the same where lips are rounded and pulled wide, which three people did up to .56 [.5 .. .7]
+    )
     least_weight: float = -0.02  # weights below and above are out of range
     most_weight: float = 1.05
+    most_gaze: float = 1.15  # the same for gaze, of which the tracker reports up to 1.08 [1.05 .. 1.2]
     full_beyond: float = 0.5
+    # Times as far from the mean mouth as the furthest of the recorded faces [1 .. 1.6]; 22 of 40, at 1.25 32. With the
+    # take of most extreme faces left out of the prior, its own go up to 1.54 times as far.
+    unlike_times: float = 1.6
+    full_unlike_times: float = 2.5
     swapped: float = 0.35  # correlation of the mouth's way with the other side's muscles [.2 .. .5]; 40 of 40
     swapped_frames: int = 300  # takes of fewer tell too little
     full_swapped: float = 0.9

@@ -83,11 +83,13 @@ def align(before: Take, after: Take, *, offset_s: float | None = None) -> Alignm
             if correlation >= Tuning.alike or (same_clock and abs(told) * after.fps < 0.5):
                 return Alignment(told, "timecode", correlation)
     together = _correlation_at(before, after, 0.0)
+    if same_clock and together >= Tuning.alike:
+        return Alignment(0.0, "start", together)
     lag = _best_lag(before, after)
     correlation = _correlation_at(before, after, lag)
     if same_clock and correlation < Tuning.alike:
         return Alignment(0.0, "start", together)
-    if together >= Tuning.alike and (same_clock or together >= correlation):
+    if together >= max(Tuning.alike, correlation):
         return Alignment(0.0, "start", together)
     return Alignment(lag, "correlation", correlation)
 
@@ -101,6 +103,20 @@ def on_clock_of(after: Take, before: Take, offset_s: float) -> tuple[Array, Mask
     whole = np.round(at)
     at = np.where(np.abs(at - whole) < 1e-3, whole, at)
     return interpolate(before.weights, at), (at >= 0) & (at <= len(before) - 1)
+
+
+def beside(before: Take, after: Take, *, offset_s: float | None = None) -> Take:
+    """Return `before` as it is shown beside `after`, frame by frame.
+
+    It is put on the clock of `after`, where the two are one performance or an offset is given; before its first frame
+    and after its last it stands still. Two performances begin together.
+    """
+    found = align(before, after, offset_s=offset_s)
+    shift_s = found.offset_s if found.alike or offset_s is not None else 0.0
+    if before.fps == after.fps and shift_s == 0.0:
+        return before
+    weights, common = on_clock_of(after, before, shift_s)
+    return Take(weights, after.fps, lost=~common, name=before.name, start_s=after.start_s)
 
 
 def _overlap_s(before: Take, after: Take, offset_s: float) -> float:

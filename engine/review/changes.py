@@ -8,10 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.character import bundled
-from engine.controls import CONTROLS, bundled_measurer
+from engine.controls import ALL_CONTROLS
+from engine.extended import bundled_face
 from engine.inpaint.regions import REGIONS
 from engine.review.align import Alignment, align, on_clock_of
 from engine.take import Array, Mask, Take, runs
+
+_IN_MM = np.array([control.unit == "mm" for control in ALL_CONTROLS])
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ class Change:
     region : where on the face: lower, eyes, upper, left, right or face
     weight : largest difference of a weight
     moved_mm : furthest that a point of the bundled head moved at the peak
-    control, by_mm : the title of the control that changed most, and by how much at the peak, signed
+    control, by_mm : the title of the control in mm that changed most, and by how much at the peak, signed
     edits : titles of the edits that touch these frames, where they are known
     """
 
@@ -66,7 +69,7 @@ class Comparison:
     weights : (frames, 52), the first take at the second one's frames
     common : (frames,) bool, where both have a frame
     differs : (frames,) bool, where they differ
-    controls : (2, frames, 8) mm, of the first and of the second
+    controls : (2, frames, 16) in the units of `ALL_CONTROLS`, of the first and of the second
     changes : in order of time
     """
 
@@ -101,7 +104,7 @@ def compare(before: Take, after: Take, *, offset_s: float | None = None, edits: 
     difference = np.abs(after.weights - weights)
     largest = difference.max(axis=1)
     differs: Mask = common & (largest > (0.0 if _one_clock(before, after, alignment) else Tuning.same))
-    measure = bundled_measurer().measure
+    measure = bundled_face().measure
     controls = np.stack([measure(weights), measure(after.weights)])
     found = [
         _change((start, stop), weights, after.weights, controls, edits)
@@ -132,7 +135,7 @@ def _change(frames: tuple[int, int], before: Array, after: Array, controls: Arra
     squares = (difference**2).sum(axis=0)
     peak = start + int(np.argmax((difference**2).sum(axis=1)))
     by_mm = controls[1, peak] - controls[0, peak]
-    column = int(np.argmax(np.abs(by_mm)))
+    column = int(np.argmax(np.where(_IN_MM, np.abs(by_mm), 0.0)))
     head = bundled()
     moved = np.linalg.norm(head.vertices(after[peak]) - head.vertices(before[peak]), axis=1)
     titles = tuple(dict.fromkeys(edit.title for edit in edits if edit.start < stop and edit.stop > start))
@@ -143,7 +146,7 @@ def _change(frames: tuple[int, int], before: Array, after: Array, controls: Arra
         region=_region(squares),
         weight=float(np.abs(difference).max()),
         moved_mm=float(moved.max()),
-        control=CONTROLS[column].title,
+        control=ALL_CONTROLS[column].title,
         by_mm=float(by_mm[column]),
         edits=titles,
     )

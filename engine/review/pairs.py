@@ -2,34 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from engine.errors import EditError
-from engine.formats import FORMATS, audio, read_take
-from engine.formats.reading import Reading
-from engine.project import ENDING, Project, replay
-from engine.quality import Flag, Seen, flags_of, seen_of, sound_of
-from engine.review.changes import Edited, compare
-from engine.review.report import Remark, Review
-from engine.take import Take
+from engine.formats import FORMATS
+from engine.formats.base.reading import Reading
+from engine.project import ENDING
+from engine.quality import Dismissal, Flag, dismissal_of, flags_of, parted, seen_of
+from engine.review.changes import Comparison, compare
+from engine.review.opening import AS_IT_IS, Opened, opened
+from engine.review.report import Review
 
 BEFORE, AFTER = "before", "after"
 SUFFIXES = ("_after", "_edited", "_clean", "_filled")  # NAME_after.csv is a version of NAME.csv or NAME_before.csv
-AS_IT_IS = Reading()
 QUEUE = 10_000  # pairs; a folder of more is a slip
-
-
-@dataclass(frozen=True, eq=False)
-class _Opened:
-    """A file as a reviewer sees it: the take, what it was made from if it tells, notes, verdict and edits."""
-
-    take: Take
-    original: Take | None
-    seen: Seen
-    verdict: str = ""
-    remarks: tuple[Remark, ...] = ()
-    edits: tuple[Edited, ...] = ()
 
 
 def review(before: Path | None, after: Path, *, offset_s: float | None = None, reading: Reading = AS_IT_IS) -> Review:
@@ -37,37 +25,52 @@ def review(before: Path | None, after: Path, *, offset_s: float | None = None, r
 
     Raises `EngineError` where a file cannot be read, where there is no original, or no frame in common.
     """
-    opened = _open(after, reading)
-    if before is None and opened.original is None:
-        raise EditError(
-            f"{after.name} does not hold what it was made from.", "Name the take before its edits, then the one after."
-        )
+    second = opened(after, reading)
     if before is None:
-        assert opened.original is not None
-        earlier, seen = opened.original, seen_of(opened.original)
+        compared, earlier = _against_original(second, offset_s)
     else:
-        first = _open(before, reading)
-        earlier, seen = first.take, first.seen
+        first = opened(before, reading)
+        compared = compare(first.take, second.take, offset_s=offset_s, edits=second.edits)
+        earlier, _ = parted(first.flags(), first.marks.dismissals)
+    counting, dismissed = parted(second.flags(), second.marks.dismissals)
     return Review(
-        compare(earlier, opened.take, offset_s=offset_s, edits=opened.edits),
-        flags_of(seen),
-        flags_of(opened.seen),
-        opened.verdict,
-        opened.remarks,
-        opened.edits,
+        compared,
+        earlier,
+        counting,
+        second.marks.verdicts,
+        second.marks.notes,
+        second.edits,
+        tuple((flag, _who(flag, second)) for flag in dismissed),
     )
 
 
-def flags(path: Path, reading: Reading = AS_IT_IS, *, sound: bool = False) -> tuple[Flag, ...]:
+def _against_original(second: Opened, offset_s: float | None) -> tuple[Comparison, tuple[Flag, ...]]:
+    """Return a project's take beside what it was made from, which begins with it, and what is found there."""
+    original = second.require_original()
+    compared = compare(original, second.take, offset_s=offset_s or 0.0, edits=second.edits)
+    if not offset_s:
+        compared = replace(compared, alignment=replace(compared.alignment, by="start"))
+    return compared, flags_of(seen_of(original), second.marks.flags)
+
+
+def _who(flag: Flag, opened_: Opened) -> Dismissal:
+    """Return who dismissed a flag that was dismissed."""
+    found = dismissal_of(flag, opened_.marks.dismissals)
+    assert found is not None
+    return found
+
+
+def flags(
+    path: Path, reading: Reading = AS_IT_IS, *, sound: bool = False, also: Iterable[str] = ()
+) -> tuple[Flag, ...]:
     """Return the automatic findings of a take, or of a project with its edits; with `sound`, of the one beside it too.
 
-    Raises `EngineError` where the take or that sound cannot be read.
+    Kinds that are not looked for unless somebody says so are, where they are named in `also`. Findings that somebody
+    dismissed are left out. Raises `EngineError` where the take or that sound cannot be read.
     """
-    seen = _open(path, reading).seen
-    heard = audio.beside(path) if sound else None
-    if heard is not None:
-        seen = replace(seen, sound=sound_of(audio.read(heard), fps=seen.fps))
-    return flags_of(seen)
+    found = opened(path, reading)
+    counting, _ = parted((found.with_sound() if sound else found).flags(also), found.marks.dismissals)
+    return counting
 
 
 def pairs(folder: Path) -> list[tuple[Path, Path]]:
@@ -100,21 +103,3 @@ def pairs(folder: Path) -> list[tuple[Path, Path]]:
             "Put equal names into its folders before and after, or NAME.csv beside NAME_after.csv.",
         )
     return found
-
-
-def _open(path: Path, reading: Reading) -> _Opened:
-    if path.suffix.lower() != ENDING:
-        take = read_take(path, reading=reading)
-        return _Opened(take, None, seen_of(take))
-    project = Project.open(path)
-    try:
-        contents = project.contents
-        state = replay(contents)
-    finally:
-        project.close()
-    edits = tuple(
-        Edited(edit.title, edit.start, edit.stop) for edit in contents.edits[: contents.position] if len(edit.weights)
-    )
-    remarks = tuple(Remark(note.frame, note.author, note.time, note.text) for note in contents.marks.notes)
-    seen = seen_of(state.take, contents.original, state.asked, state.visemes)
-    return _Opened(state.take, contents.original, seen, contents.marks.verdict, remarks, edits)

@@ -7,18 +7,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from engine.controls import CONTROLS
-from engine.quality import KINDS, Flag
+from engine import assets
+from engine.controls import ALL_CONTROLS
+from engine.project import Note, Verdict
+from engine.quality import KINDS, TABLE, Dismissal, Flag
 from engine.review.changes import Change, Comparison, Edited
 from engine.take import Array, Mask, Take, runs, timecode
 
 CHART_POINTS = 1200  # of a curve drawn in the report; more cannot be told apart at its width
 CHART_WIDTH, CHART_HEIGHT = 960, 64  # px
+LEAST_SHOWN = 0.05  # mm or degrees that a control must change by for its curve to be drawn
 FLAGS_SHOWN = 200  # the heaviest; a table of thousands is read by nobody
 
 REGION_TITLES = {
@@ -30,17 +32,8 @@ REGION_TITLES = {
     "right": "Right side",
 }
 
-Draw = Callable[[Change], bytes]  # a PNG of before, after and their difference
-
-
-@dataclass(frozen=True)
-class Remark:
-    """A reviewer's note as the report shows it."""
-
-    frame: int
-    author: str
-    time: str
-    text: str
+Draw = Callable[[Change], bytes]  # a PNG of before, after and their difference; empty for a change without one
+DrawNote = Callable[[Note], bytes]  # a PNG of the face with what was drawn on it
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,17 +43,25 @@ class Review:
     Attributes
     ----------
     comparison : the two takes and where they differ
-    flags_before, flags_after : automatic findings on each
-    verdict : approved, needs work, or nothing yet
-    remarks, edits : the reviewer's notes, and the edits in order
+    flags_before, flags_after : automatic findings on each that nobody has dismissed
+    verdicts : all that were given, oldest first; the last counts
+    notes : the reviewers'
+    edits : in order
+    dismissed : findings on the second that somebody does not mind, and who
     """
 
     comparison: Comparison
     flags_before: tuple[Flag, ...]
     flags_after: tuple[Flag, ...]
-    verdict: str = ""
-    remarks: tuple[Remark, ...] = ()
+    verdicts: tuple[Verdict, ...] = ()
+    notes: tuple[Note, ...] = ()
     edits: tuple[Edited, ...] = ()
+    dismissed: tuple[tuple[Flag, Dismissal], ...] = ()
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """The verdict that counts; None where there is none, or the last one was taken back."""
+        return self.verdicts[-1] if self.verdicts and self.verdicts[-1].judgement else None
 
     @property
     def new_flags(self) -> tuple[Flag, ...]:
@@ -97,11 +98,12 @@ def _unmatched(
 
 @dataclass(frozen=True)
 class _Chart:
-    """One control's difference as an SVG polyline, with the largest difference in mm."""
+    """One control's difference as an SVG polyline, with the largest difference in its unit."""
 
     title: str
     points: str
-    largest_mm: float
+    largest: float
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -116,17 +118,42 @@ class _Row:
     picture: str = field(default="")
 
 
-def html(review: Review, *, draw: Draw | None = None, full_mm: float = 0.0, at: datetime | None = None) -> str:
-    """Return the report as one HTML text; `draw` makes a picture of each change, and may be slow;
-    `full_mm` is the motion that its difference shows brightest.
+@dataclass(frozen=True)
+class _Remark:
+    """One note as the report shows it: texts, and a PNG as base64 of what was drawn."""
+
+    time: str
+    frames: str
+    region: str
+    note: Note
+    picture: str = field(default="")
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """What draws the pictures of a report, each of which may be slow.
+
+    Attributes
+    ----------
+    change : makes a picture of a change
+    note : makes one of what was drawn with a note
+    full_mm : the motion that a change's difference shows brightest
+    progress : hears how many pictures are done, and of how many
+    """
+
+    change: Draw
+    note: DrawNote
+    full_mm: float
+    progress: Callable[[int, int], None] = lambda done, of: None
+
+
+def html(review: Review, *, pictures: Pictures | None = None, at: datetime | None = None) -> str:
+    """Return the report as one HTML text, without pictures where nothing draws them.
 
     All text of files, notes and names is escaped: it is shown, never interpreted.
     """
     compared = review.comparison
-    rows = []
-    for number, change in enumerate(compared.changes, 1):
-        picture = "" if draw is None else base64.b64encode(draw(change)).decode()
-        rows.append(_row(number, change, compared.after, picture))
+    changes, notes = _drawn(review, pictures)
     heaviest = sorted(review.flags_after, key=lambda flag: -flag.weight)[:FLAGS_SHOWN]
     return (
         _environment()
@@ -134,7 +161,8 @@ def html(review: Review, *, draw: Draw | None = None, full_mm: float = 0.0, at: 
         .render(
             review=review,
             compared=compared,
-            rows=rows,
+            rows=changes,
+            notes=notes,
             charts=_charts(compared),
             map=_map(compared.differs),
             counts=_counts(review),
@@ -142,13 +170,40 @@ def html(review: Review, *, draw: Draw | None = None, full_mm: float = 0.0, at: 
             hidden=len(review.flags_after) - len(heaviest),
             kinds=KINDS,
             regions=REGION_TITLES,
-            full_mm=f"{full_mm:g}",
+            full_mm=f"{pictures.full_mm:g}" if pictures is not None else "",
             clock=lambda frame: clock(frame, compared.after.fps),
+            moment=moment,
             width=CHART_WIDTH,
             height=CHART_HEIGHT,
-            made=(at or datetime.now()).strftime("%d %b %Y, %H:%M"),
+            written=(at or datetime.now()).strftime("%d %b %Y, %H:%M"),
         )
     )
+
+
+def _drawn(review: Review, pictures: Pictures | None) -> tuple[list[_Row], list[_Remark]]:
+    """Return changes and notes with their pictures."""
+    compared, notes = review.comparison, sorted(review.notes, key=lambda note: note.frame)
+    total = len(compared.changes) + len(notes)
+    rows, remarks = [], []
+    for number, change in enumerate(compared.changes, 1):
+        drawn = b"" if pictures is None else pictures.change(change)
+        rows.append(_row(number, change, compared.after, base64.b64encode(drawn).decode()))
+        if pictures is not None:
+            pictures.progress(number, total)
+    for number, note in enumerate(notes, len(rows) + 1):
+        drawn = b"" if pictures is None or note.drawing is None else pictures.note(note)
+        remarks.append(_remark(note, compared.after.fps, base64.b64encode(drawn).decode()))
+        if pictures is not None:
+            pictures.progress(number, total)
+    return rows, remarks
+
+
+def moment(time: str) -> str:
+    """Return when something was said as people read it; a time that is none as it stands."""
+    try:
+        return datetime.fromisoformat(time).strftime("%d %b %Y, %H:%M")
+    except ValueError:
+        return time
 
 
 @dataclass(frozen=True)
@@ -168,7 +223,7 @@ def index(entries: Sequence[Entry]) -> str:
 def _environment() -> Environment:
     """Return what fills in the templates; everything put into them is escaped."""
     return Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+        loader=FileSystemLoader(assets.TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
 
 
@@ -178,25 +233,33 @@ def clock(frame: int, fps: float) -> str:
 
 
 def _row(number: int, change: Change, after: Take, picture: str) -> _Row:
-    return _Row(
-        number,
-        clock(change.start, after.fps),
-        f"frame {change.start}" if change.stop - change.start == 1 else f"frames {change.start} to {change.stop - 1}",
-        (change.stop - change.start) / after.fps,
-        change,
-        picture,
-    )
+    seconds = (change.stop - change.start) / after.fps
+    return _Row(number, clock(change.start, after.fps), _frames(change.start, change.stop), seconds, change, picture)
+
+
+def _remark(note: Note, fps: float, picture: str) -> _Remark:
+    region = "" if note.region == "face" else REGION_TITLES.get(note.region, note.region)
+    return _Remark(clock(note.frame, fps), _frames(note.frame, note.stop), region, note, picture)
+
+
+def _frames(start: int, stop: int) -> str:
+    return f"frame {start}" if stop - start == 1 else f"frames {start} to {stop - 1}"
 
 
 def _charts(compared: Comparison) -> list[_Chart]:
-    """Return the difference of each control that changed, largest first."""
+    """Return the difference of each control that changed, largest first; those in one unit are drawn to one scale."""
     difference = (compared.controls[1] - compared.controls[0]) * compared.common[:, None]
     largest = np.abs(difference).max(axis=0, initial=0.0)
-    scale = max(float(largest.max(initial=0.0)), 1e-9)
-    order = [int(column) for column in np.argsort(-largest) if largest[column] > 0.01]
+    scales = {
+        unit: max([1e-9, *(size for size, control in zip(largest, ALL_CONTROLS, strict=True) if control.unit == unit)])
+        for unit in {control.unit for control in ALL_CONTROLS}
+    }
+    order = [int(column) for column in np.argsort(-largest) if largest[column] > LEAST_SHOWN]
     return [
-        _Chart(CONTROLS[column].title, _polyline(difference[:, column], scale), float(largest[column]))
-        for column in order
+        _Chart(
+            control.title, _polyline(difference[:, column], scales[control.unit]), float(largest[column]), control.unit
+        )
+        for column, control in ((column, ALL_CONTROLS[column]) for column in order)
     ]
 
 
@@ -219,13 +282,13 @@ def _map(differs: Mask) -> list[tuple[float, float]]:
     return [(start * scale, max(1.0, (stop - start) * scale)) for start, stop in runs(differs)]
 
 
-def _counts(review: Review) -> list[tuple[str, int, int]]:
-    """Return for each kind of flag its title and how many there were before and are after."""
+def _counts(review: Review) -> list[tuple[str, str, int, int]]:
+    """Return for each kind of flag its title, its threshold, and how many there were before and are after."""
     counts = []
-    for kind, title in KINDS.items():
+    for kind in TABLE:
         before, after = (
-            sum(flag.kind == kind for flag in flags) for flags in (review.flags_before, review.flags_after)
+            sum(flag.kind == kind.name for flag in flags) for flags in (review.flags_before, review.flags_after)
         )
         if before or after:
-            counts.append((title, before, after))
+            counts.append((kind.title, kind.threshold, before, after))
     return counts

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.character import Character
+from engine.easing import ease
 from engine.take import SHAPES, Array
 
 
@@ -61,4 +62,4 @@ def closedness(sizes: Array, gaps: tuple[Gap, ...] = GAPS) -> Array:
     closed = np.array([gap.closed_mm for gap in gaps])
     opened = np.array([gap.open_mm for gap in gaps])
     share = np.clip((opened - np.where(np.isfinite(sizes), sizes, np.inf)) / (opened - closed), 0.0, 1.0)
-    return np.asarray(share * share * (3 - 2 * share))
+    return ease(share)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from engine.character import Character
 from engine.errors import EditError
+from engine.mesh import parts_of
 from engine.take import SHAPE_INDEX, Array
 
 REACH = 0.15  # of half the distance of the eyes: how far beside the wanted place a vertex may be in front of it
@@ -161,12 +162,5 @@ def _in_front(wanted: Array, points: Array, skin: npt.NDArray[np.int64], unit: f
 
 def _skin(character: Character) -> npt.NDArray[np.int64]:
     """Return the vertices connected to the tip of the nose: no eyes, teeth or brows."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    corners = character.triangles
-    ends = np.roll(corners, 1, axis=1)
-    count = len(character.neutral)
-    edges = coo_array((np.ones(corners.size), (corners.ravel(), ends.ravel())), shape=(count, count))
-    _, part = connected_components(edges, directed=False)
+    part = parts_of(character.triangles, len(character.neutral))
     return np.flatnonzero(part == part[character.landmarks["nose_tip"]])

@@ -10,19 +10,19 @@ import numpy as np
 
 from engine import exact
 from engine.character import Character, bundled
-from engine.controls import bundled_measurer, control_index, limited
+from engine.controls import bundled_measurer, control_index
 from engine.errors import EditError
+from engine.jaw import follow, limited
 from engine.pose import Pose, filled
 from engine.spacetime import prior
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import standard
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.system import Position, System
-from engine.take import SHAPE_INDEX, SHAPES, Array, Mask, Take, runs
+from engine.take import SHAPES, Array, Mask, Take, require_frames, runs
 from engine.words import counted
 
 FARTHEST_MM = 1000.0
-_CLOSE, _JAW = SHAPE_INDEX["mouthClose"], SHAPE_INDEX["jawOpen"]
 OPENED_MM = 0.05  # less is not seen
 CLOSING_ROUNDS, DAMPING_MM2 = 8, 0.5
 
@@ -109,9 +109,7 @@ class Spread:
         slope = np.einsum(
             "ngx,gxs->ngs", vectors / np.maximum(sizes, 1e-9)[..., None], gaps.rows.reshape(-1, 3, len(SHAPES))
         )
-        joined = weights[:, _CLOSE] > weights[:, _JAW]  # there closing the lips follows the jaw
-        slope[joined, :, _JAW] += slope[joined, :, _CLOSE]
-        slope[joined, :, _CLOSE] = 0.0
+        follow(slope, weights)
         missing = -np.maximum(sizes - before, 0.0) * closedness
         slope = np.where(((weights <= 0.0) & (np.einsum("ngs,ng->ns", slope, missing) < 0))[:, None, :], 0.0, slope)
         gram = slope @ slope.transpose(0, 2, 1) + DAMPING_MM2 * np.eye(slope.shape[1])
@@ -228,8 +226,7 @@ def pose_reaching(take: Take, frame: int, controls: Mapping[str, float]) -> Arra
 
 def _check(take: Take, pins: Mapping[int, Pose], frames: tuple[int, int]) -> None:
     start, stop = frames
-    if not 0 <= start < stop <= len(take):
-        raise EditError(f"Frames {start}:{stop} are not within the take, which has {counted(len(take), 'frame')}.")
+    require_frames(take, start, stop)
     if not pins:
         raise EditError("There is no pin to spread.", "Pin a pose at a frame of the range.")
     for frame in pins:

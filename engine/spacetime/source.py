@@ -9,7 +9,8 @@ import numpy as np
 
 from engine.character import Character
 from engine.errors import EditError
-from engine.formats.capture import Markers
+from engine.formats.markers.capture import Markers
+from engine.jaw import drawable
 from engine.spacetime.align import HeadMotion, check_points, stillest
 from engine.spacetime.closure import GAPS, Gaps
 from engine.spacetime.denoise import denoise
@@ -17,7 +18,6 @@ from engine.spacetime.layout import Layout, standard
 from engine.take import SHAPE_INDEX, Array, Mask, Take, runs
 from engine.words import counted
 
-_JAW, _CLOSE = SHAPE_INDEX["jawOpen"], SHAPE_INDEX["mouthClose"]
 # Pairs of markers that meet, by gap. Lip markers sit on the outside: closed is how far apart they are at rest.
 MARKER_GAPS = {
     "lips": ("lip_upper", "lip_lower"),
@@ -70,17 +70,10 @@ class Source:
         return replace(self, displacements=self.displacements[rows], gaps=self.gaps[rows], take=take, head=head)
 
 
-def shown(weights: Array) -> Array:
-    """Return weights, (frames, 52), as a character shows them: in 0..1, lips closing no further than the jaw opens."""
-    limited = np.clip(weights, 0.0, 1.0)
-    limited[:, _CLOSE] = np.minimum(limited[:, _CLOSE], limited[:, _JAW])
-    return limited
-
-
 def from_take(take: Take, character: Character, layout: Layout | None = None) -> Source:
     """Return what the markers of a character do when it plays a take."""
     placed = layout or standard(character)
-    weights = shown(take.weights)
+    weights = drawable(take.weights)
     moved = np.einsum("fs,snx->fnx", weights, placed.deltas(character), optimize=True)
     gaps = Gaps(character)
     sizes = np.full((len(take), len(GAPS)), np.nan)

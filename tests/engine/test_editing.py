@@ -7,7 +7,7 @@ import pytest
 
 from engine import editing
 from engine.controls import ALL_CONTROLS, ALL_INDEX, CONTROL_INDEX, CONTROLS, measure
-from engine.editing import Dragger, ask, edit_control, parse_frames
+from engine.editing import ControlRequest, Dragger, ask, parse_frames, set_control
 from engine.errors import EditError
 from engine.extended import bundled_face
 from engine.formats import read_take, write_take
@@ -27,7 +27,7 @@ def demo_take() -> Take:
 
 def test_closing_the_lips_of_a_real_take(real_take_path: Path, tmp_path: Path) -> None:
     take = read_take(real_take_path)
-    patch = edit_control(take, "lips_vertical", (1600, 1620), "set", 0.0)
+    patch = set_control(take, ControlRequest("lips_vertical", (1600, 1620), "set", 0.0))
     edited = patch.apply(take)
     assert measure(edited.weights)[1600:1620, LIPS].max() <= 2.0
     assert edited.weights[1605:1615, SHAPE_INDEX["jawOpen"]].max() < 0.2 < take.weights[1605, SHAPE_INDEX["jawOpen"]]
@@ -102,7 +102,7 @@ def test_a_range_outside_the_take_is_refused(demo_take: Take, text: str) -> None
 
 def test_a_take_of_one_frame_can_be_edited() -> None:
     take = Take(weights=np.zeros((1, 52)), fps=30.0)
-    patch = edit_control(take, "lips_vertical", (0, 1), "add", 8.0)
+    patch = set_control(take, ControlRequest("lips_vertical", (0, 1), "add", 8.0))
     assert patch.reached[0, LIPS] > 3.0
     assert patch.apply(take).weights.shape == (1, 52)
 
@@ -113,7 +113,7 @@ def test_a_change_must_be_finite(demo_take: Take) -> None:
 
 
 def test_a_wink_leaves_the_other_eye_bit_for_bit(demo_take: Take) -> None:
-    patch = edit_control(demo_take, "eyelid_right", (60, 66), "set", 0.0)
+    patch = set_control(demo_take, ControlRequest("eyelid_right", (60, 66), "set", 0.0))
     left = [index for index, name in enumerate(SHAPES) if name.startswith("eye") and name.endswith("Left")]
     np.testing.assert_array_equal(patch.weights[:, left], demo_take.weights[patch.start : patch.stop, left])
     assert patch.reached[60 - patch.start : 66 - patch.start, CONTROL_INDEX["eyelid_right"]].max() < 1.0
@@ -150,7 +150,7 @@ def test_two_curves_asked_over_other_frames_leave_no_notch(demo_take: Take) -> N
 
 def test_extended_controls_have_their_own_shapes(demo_take: Take) -> None:
     for control, prefix in (("brow_inner", "brow"), ("gaze_vertical", "eyeLook"), ("jaw_sideways", ("jaw", "mouth"))):
-        patch = edit_control(demo_take, control, (60, 80), "add", 1.0)
+        patch = set_control(demo_take, ControlRequest(control, (60, 80), "add", 1.0))
         moved = (patch.weights != demo_take.weights[patch.start : patch.stop]).any(axis=0)
         assert moved.any() and all(SHAPES[index].startswith(prefix) for index in np.flatnonzero(moved))
 
@@ -158,5 +158,5 @@ def test_extended_controls_have_their_own_shapes(demo_take: Take) -> None:
 def test_closed_lips_stay_closed_while_their_corners_move() -> None:
     take = Take(weights=np.zeros((90, 52)), fps=30.0)
     for control, amount in (("lips_horizontal", -4.0), ("corner_left", 4.0)):
-        patch = edit_control(take, control, (30, 60), "add", amount)
+        patch = set_control(take, ControlRequest(control, (30, 60), "add", amount))
         assert patch.reached[:, LIPS].max() < 1.0

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
 from engine.controls import ALL_CONTROLS, ALL_INDEX
-from engine.editing import Dragger, Patch, ask, edit_control
+from engine.editing import ControlRequest, Dragger, Patch, ask, set_control
 from engine.extended import bundled_face
 from engine.formats import read_take
 from engine.lab.performer import demo
@@ -30,7 +30,7 @@ law = settings(max_examples=12, deadline=None, derandomize=True, suppress_health
 
 
 def pull(take: Take, control: str, by: float, start: int, frames: int = 24) -> Patch:
-    return edit_control(take, control, (start, start + frames), "add", by * SMALL[control])
+    return set_control(take, ControlRequest(control, (start, start + frames), "add", by * SMALL[control]))
 
 
 def curve(weights: Array, control: str) -> Array:
@@ -68,8 +68,8 @@ def test_a_small_pull_is_reached(control: str, by: float, start: int) -> None:
 @given(control=controls, by=pulls, start=places)
 def test_asking_twice_is_asking_once(control: str, by: float, start: int) -> None:
     value = float(curve(DEMO.weights, control)[start : start + 24].mean() + by * SMALL[control])
-    once = edit_control(DEMO, control, (start, start + 24), "set", max(0.0, value)).apply(DEMO)
-    twice = edit_control(once, control, (start, start + 24), "set", max(0.0, value)).apply(once)
+    once = set_control(DEMO, ControlRequest(control, (start, start + 24), "set", max(0.0, value))).apply(DEMO)
+    twice = set_control(once, ControlRequest(control, (start, start + 24), "set", max(0.0, value))).apply(once)
     np.testing.assert_allclose(curve(twice.weights, control), curve(once.weights, control), rtol=0, atol=0.05)
 
 
@@ -107,10 +107,12 @@ def test_a_mirrored_take_is_edited_mirrored(control: str, by: float, start: int)
 def test_an_edit_is_the_same_at_any_rate(fps: float, control: str, by: float, start: int) -> None:
     """As at 120 fps, within .03 of the edit's largest change of a weight."""
     smooth, frames = SLOW, (start * 20, start * 20 + 100)
-    fine = edit_control(smooth, control, frames, "add", by * SMALL[control]).apply(smooth)
+    fine = set_control(smooth, ControlRequest(control, frames, "add", by * SMALL[control])).apply(smooth)
     step = round(120 / fps)
     coarse = Take(weights=smooth.weights[::step], fps=fps)
-    seen = edit_control(coarse, control, (frames[0] // step, frames[1] // step), "add", by * SMALL[control])
+    seen = set_control(
+        coarse, ControlRequest(control, (frames[0] // step, frames[1] // step), "add", by * SMALL[control])
+    )
     moved = np.abs(fine.weights - smooth.weights).max()
     assert np.abs(seen.apply(coarse).weights - fine.weights[::step]).max() <= max(0.03 * moved, TINY)
 

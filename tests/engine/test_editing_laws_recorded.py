@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from engine.controls import ALL_INDEX
-from engine.editing import Dragger, edit_control
+from engine.editing import ControlRequest, Dragger, set_control
 from engine.extended import bundled_face
 from engine.formats import read_take
 from engine.lab.corpus import data_folder
@@ -50,7 +50,7 @@ def test_pulled_curves_go_there_come_back_and_stay(path: Path, share: float) -> 
         before = _curve(take, control, frames)
         if by < 0 and before.min() < OPEN_MM:
             continue
-        patch = edit_control(take, control, frames, "add", by)
+        patch = set_control(take, ControlRequest(control, frames, "add", by))
         once = patch.apply(take)
         assert abs((_curve(once, control, frames) - before)[8:-8].mean() / by) >= 0.95, control
         asked = Dragger(once).controls[patch.start : patch.stop].copy()
@@ -58,8 +58,8 @@ def test_pulled_curves_go_there_come_back_and_stay(path: Path, share: float) -> 
         back = Dragger(once).drag(patch.start, asked).apply(once)
         assert np.abs(_curve(back, control, frames) - before).mean() <= 0.1, control
         value = float(before.mean() + by)
-        one = edit_control(take, control, frames, "set", value).apply(take)
-        two = edit_control(one, control, frames, "set", value).apply(one)
+        one = set_control(take, ControlRequest(control, frames, "set", value)).apply(take)
+        two = set_control(one, ControlRequest(control, frames, "set", value)).apply(one)
         again = np.abs(_curve(two, control, frames) - _curve(one, control, frames))
         assert again[8:-8].mean() <= 0.1, control
 
@@ -70,14 +70,18 @@ def test_sides_and_rates_make_no_difference(path: Path, share: float) -> None:
     take, frames = _piece(path, share)
     mirror = take.with_weights(take.weights[:, MIRROR])
     for left, right in (("corner_left", "corner_right"), ("eyelid_left", "eyelid_right")):
-        here = edit_control(take, left, frames, "add", -2.0).apply(take)
-        there = edit_control(mirror, right, frames, "add", -2.0).apply(mirror)
+        here = set_control(take, ControlRequest(left, frames, "add", -2.0)).apply(take)
+        there = set_control(mirror, ControlRequest(right, frames, "add", -2.0)).apply(mirror)
         moved = np.abs(here.weights - take.weights).max()
         assert moved > 0, left
         assert np.abs(there.weights[:, MIRROR] - here.weights).max() <= 1e-6, left
     if take.fps > 45:
         take, frames = Take(weights=take.weights[frames[0] % 2 :], fps=take.fps), (frames[0] // 2, frames[1] // 2)
         half = Take(weights=take.weights[::2], fps=take.fps / 2)
-        fine = edit_control(take, "lips_vertical", (2 * frames[0], 2 * frames[1]), "add", 5.0).apply(take).weights[::2]
-        coarse = edit_control(half, "lips_vertical", frames, "add", 5.0).apply(half).weights
+        fine = (
+            set_control(take, ControlRequest("lips_vertical", (2 * frames[0], 2 * frames[1]), "add", 5.0))
+            .apply(take)
+            .weights[::2]
+        )
+        coarse = set_control(half, ControlRequest("lips_vertical", frames, "add", 5.0)).apply(half).weights
         assert np.abs(fine - coarse).max() <= 0.1 * np.abs(fine - half.weights).max()

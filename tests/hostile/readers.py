@@ -55,8 +55,8 @@ def _read_take(path: Path) -> None:
 
 def _markers(*endings: str) -> Callable[[Path], Iterator[tuple[str, bytes]]]:
     def samples(folder: Path) -> Iterator[tuple[str, bytes]]:
-        from engine.formats.capture import Markers
         from engine.formats.markers import write
+        from engine.formats.markers.capture import Markers
 
         positions = np.round(100 * np.random.default_rng(0).normal(size=(6, 4, 3)), 3)
         positions[2, 1] = np.nan
@@ -132,11 +132,11 @@ def _projects(folder: Path) -> Iterator[tuple[str, bytes]]:
     made = sample(Take(np.random.default_rng(3).random((40, len(SHAPES))), 30.0, name="random"))
     from dataclasses import replace
 
-    from engine.project import change_between, mark_edit, viseme_edit
+    from engine.project import Verdict, change_between, mark_edit, viseme_edit
 
     lane = attached([Cue(0, 0.5, "M"), Cue(0.5, 0.9, "AA1")], "a")
     steps = (
-        mark_edit("mark", made.marks, replace(made.marks, verdict="x")),
+        mark_edit("mark", made.marks, replace(made.marks, verdicts=(Verdict("x"),))),
         viseme_edit("v", change_between(None, lane)),
     )
     yield "a.retake", stored(replace(made, edits=(*made.edits, *steps)), folder)
@@ -265,6 +265,22 @@ def _read_mesh(path: Path) -> None:
     obj.read_mesh(path)
 
 
+def _scans(folder: Path) -> Iterator[tuple[str, bytes]]:
+    import trimesh
+
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    yield "a.ply", ball.export(file_type="ply")
+    yield "b.ply", ball.export(file_type="ply", encoding="ascii")
+    yield "c.stl", ball.export(file_type="stl")
+    yield "d.stl", ball.export(file_type="stl_ascii").encode()
+
+
+def _read_scan(path: Path) -> None:
+    from engine.formats.characters import scans
+
+    scans.read(path)
+
+
 def _label_files(folder: Path) -> Iterator[tuple[str, bytes]]:
     rows = [{"frame": 3, "weights": {"jawOpen": 0.4}}, {"frame": 12, "weights": {"mouthClose": 0, "tongueOut": 1}}]
     yield "a.json", json.dumps({"target": "heads/anna.npz", "labels": rows}).encode()
@@ -283,7 +299,7 @@ def _layouts(folder: Path) -> Iterator[tuple[str, bytes]]:
 
 def _read_layout(path: Path) -> None:
     from engine.character import bundled
-    from engine.formats import markers_layout
+    from engine.formats.markers import layout as markers_layout
 
     markers_layout.read(path, head=bundled())
 
@@ -361,6 +377,7 @@ READERS: dict[str, Reader] = {
     "npz heads": Reader(_heads, _read_head, mutate.archive),
     "gltf": Reader(_scenes, _read_scene, mutate.scene),
     "obj": Reader(_meshes, _read_mesh, mutate.text),
+    "ply and stl": Reader(_scans, _read_scan, mutate.binary),
     "labels": Reader(_label_files, _read_labels, mutate.text),
     "landmark csv": Reader(_layouts, _read_layout, mutate.text),
     "live packets": Reader(_packets, _read_packet, mutate.binary),

@@ -32,7 +32,7 @@ def window(qtbot: QtBot, tmp_path: Path) -> Iterator[MainWindow]:
 
 def end(qtbot: QtBot, window: MainWindow) -> None:
     """Close a window without a question, and delete it when its threads have ended: a busy keeper delays that."""
-    window.session.undo.setClean()
+    window.session.document.undo.setClean()
     window.close()
     qtbot.waitUntil(lambda: window.closed, timeout=30_000)
     window.deleteLater()

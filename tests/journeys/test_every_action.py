@@ -48,7 +48,7 @@ def test_the_key_of_the_tool_in_hand_leaves_its_button_lit(window: MainWindow) -
     window.curves.setFocus()
     for _ in range(2):
         QTest.keyClick(window.curves, Qt.Key.Key_V)
-        assert window.session.tool == "drag" and window.actions_by_name["drag_tool"].isChecked()
+        assert window.session.view.tool == "drag" and window.actions_by_name["drag_tool"].isChecked()
 
 
 def test_ctrl_q_ends_the_program(qtbot: QtBot, window: MainWindow) -> None:

@@ -23,8 +23,8 @@ def reached(window: MainWindow) -> list[QWidget]:
 
 
 def with_sound(window: MainWindow) -> None:
-    marks = window.session.marks.with_medium("audio", Media("audio", "slate.wav", "0" * 64, 0.0))
-    window.session.set_marks(marks)
+    marks = window.session.document.marks.with_medium("audio", Media("audio", "slate.wav", "0" * 64, 0.0))
+    window.session.document.set_marks(marks)
 
 
 def test_a_click_on_ruler_face_or_lanes_takes_the_keys_from_a_note(window: MainWindow) -> None:
@@ -35,19 +35,19 @@ def test_a_click_on_ruler_face_or_lanes_takes_the_keys_from_a_note(window: MainW
         QTest.mouseClick(target, LEFT, PLAIN, QPoint(target.width() // 2, 10))
         assert widget.hasFocus()
         QTest.keyClick(QApplication.focusWidget(), Key.Key_P)
-        assert window.session.tool == "pin" and window.notes.entry.text() == ""
+        assert window.session.view.tool == "pin" and window.notes.entry.text() == ""
 
 
 def test_a_fill_is_kept_by_the_key_after_it_was_made_by_the_mouse(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
-    session.select((session.marks.spans[0].start, session.marks.spans[0].stop))
+    session.view.select((session.document.marks.spans[0].start, session.document.marks.spans[0].stop))
     window.notes.entry.setFocus()
     QTest.mouseClick(window.spans.fill_button, LEFT)
     assert window.curves.hasFocus()
     qtbot.waitUntil(lambda: bool(window.filling.variants) and not window.filling.busy, timeout=60_000)
     assert window.curves.hasFocus()
     QTest.keyClick(QApplication.focusWidget(), Key.Key_Return)
-    qtbot.waitUntil(lambda: session.undo.count() == 1, timeout=10_000)
+    qtbot.waitUntil(lambda: session.document.undo.count() == 1, timeout=10_000)
     assert window.curves.hasFocus() and window.notes.entry.text() == ""
 
 
@@ -92,7 +92,7 @@ def test_what_is_deleted_hands_the_keys_to_the_lanes(window: MainWindow) -> None
 
 def test_tab_goes_through_everything_as_the_eye_does(window: MainWindow) -> None:
     with_sound(window)
-    window.session.expand(0)
+    window.session.view.expand(0)
     for tool in TOOLS:
         window.actions_by_name[f"{tool}_tool"].trigger()
         QApplication.processEvents()
@@ -144,7 +144,7 @@ def test_whatever_has_the_keys_shows_it(window: MainWindow) -> None:
 
 
 def test_what_tab_reached_is_used_by_the_keys(window: MainWindow) -> None:
-    frame = window.session.playhead
+    frame = window.session.view.playhead
     buttons = (each for each in reached(window) if isinstance(each, QAbstractButton) and each.isCheckable())
     box = next(each for each in buttons if not each.isChecked())  # a tool in hand is not put down by its own key
     box.setFocus(Qt.FocusReason.TabFocusReason)
@@ -154,7 +154,7 @@ def test_what_tab_reached_is_used_by_the_keys(window: MainWindow) -> None:
     slider.setFocus(Qt.FocusReason.TabFocusReason)
     value = slider.value()
     QTest.keyClick(slider, Key.Key_Right)
-    assert slider.value() > value and window.session.playhead == frame
+    assert slider.value() > value and window.session.view.playhead == frame
     QTest.keyClick(slider, Key.Key_Space)
     assert window.transport.playing
 

@@ -31,12 +31,12 @@ def drop(window: MainWindow, path: Path) -> None:
 def held(qtbot: QtBot, window: MainWindow, frame: int) -> QPoint:
     """Press on a curve and pull it a little; returns where the pointer is."""
     area, lane = window.curves.viewport(), window.curves.lane(LIPS)
-    value = float(window.session.curve(LIPS)[frame])
+    value = float(window.session.document.curve(LIPS)[frame])
     start = window.curves.mapFromScene(QPointF(lane.x_of(frame), lane.y_of(value)))
     QTest.mouseMove(area, start)
     QTest.mousePress(area, LEFT, PLAIN, start)
     QTest.mouseMove(area, start + QPoint(0, 12))
-    qtbot.waitUntil(lambda: window.session.draft is not None, timeout=20_000)
+    qtbot.waitUntil(lambda: window.session.document.draft is not None, timeout=20_000)
     return start + QPoint(0, 12)
 
 
@@ -50,7 +50,7 @@ def let_go(qtbot: QtBot, window: MainWindow, at: QPoint) -> None:
 def test_dropped_files_that_are_none_leave_a_sentence_and_the_take(
     qtbot: QtBot, window: MainWindow, tmp_path: Path
 ) -> None:
-    before = window.session.original
+    before = window.session.document.original
     for ending in (".csv", ".retake", ".trc", ".c3d", ".TextGrid", ".json", ".wav", ".mp4", ".txt"):
         for make in (os.mkfifo, Path.mkdir, Path.touch):
             path = tmp_path / f"{make.__name__}{ending}"
@@ -59,7 +59,7 @@ def test_dropped_files_that_are_none_leave_a_sentence_and_the_take(
             drop(window, path)
             qtbot.waitUntil(window.notices.isVisible, timeout=10_000)
             assert path.name in window.notices.text.text()
-            assert window.session.original is before
+            assert window.session.document.original is before
 
 
 CASES = ROOT.parent / "shared" / "cases" / "hostile"
@@ -85,12 +85,12 @@ COLLECTED = sorted(
 def test_a_file_made_to_harm_leaves_a_sentence_and_the_window(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, name: str
 ) -> None:
-    before, path = window.session.original, tmp_path / name
+    before, path = window.session.document.original, tmp_path / name
     path.write_bytes(HOSTILE[name] if name in HOSTILE else (CASES / name).read_bytes())
     window.notices.hide()
     drop(window, path)
     qtbot.waitUntil(window.notices.isVisible, timeout=20_000)
-    assert len(window.notices.text.text()) <= 310 and window.session.original is before
+    assert len(window.notices.text.text()) <= 310 and window.session.document.original is before
     settled(qtbot, window)
 
 
@@ -100,10 +100,10 @@ def test_a_take_of_a_frame_or_two_is_edited_at_its_ends(qtbot: QtBot, window: Ma
     session.open(Take(np.full((frames, len(SHAPES)), 0.2), 30.0, name="short"), None)
     settled(qtbot, window)
     for frame in (0, frames - 1):
-        count = session.undo.count()
+        count = session.document.undo.count()
         let_go(qtbot, window, held(qtbot, window, frame))
-        assert session.undo.count() == count + 1
-    session.select((0, frames))
+        assert session.document.undo.count() == count + 1
+    session.view.select((0, frames))
     for name in (
         "fill",
         "close_here",
@@ -119,31 +119,31 @@ def test_a_take_of_a_frame_or_two_is_edited_at_its_ends(qtbot: QtBot, window: Ma
         window.actions_by_name[name].trigger()  # pytest-qt fails the test for what a slot raises
         settled(qtbot, window)
     window.transport.run(0.0)
-    for _ in range(session.undo.count()):
+    for _ in range(session.document.undo.count()):
         QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     settled(qtbot, window)
-    np.testing.assert_array_equal(session.take.weights, session.original.weights)
+    np.testing.assert_array_equal(session.document.take.weights, session.document.original.weights)
 
 
 def test_a_drag_is_broken_off_by_escape_a_tool_or_another_take(
     qtbot: QtBot, window: MainWindow, tmp_path: Path
 ) -> None:
     session = window.session
-    original = session.original.weights
+    original = session.document.original.weights
     at = held(qtbot, window, 100)
     QTest.keyClick(window, Qt.Key.Key_Escape)
     let_go(qtbot, window, at)
-    assert session.draft is None and session.undo.count() == 0
+    assert session.document.draft is None and session.document.undo.count() == 0
     for tool in ("draw", "scale", "pin", "mark", "drag"):
         at = held(qtbot, window, 100)
-        session.choose_tool(tool)
+        session.view.choose_tool(tool)
         let_go(qtbot, window, at)
-        session.choose_tool("drag")
+        session.view.choose_tool("drag")
         settled(qtbot, window)
-        session.undo.setIndex(0)
-        np.testing.assert_array_equal(session.take.weights, original)
+        session.document.undo.setIndex(0)
+        np.testing.assert_array_equal(session.document.take.weights, original)
     at = held(qtbot, window, 100)
     session.open(Take(np.full((2, len(SHAPES)), 0.2), 30.0, name="short"), None)
     let_go(qtbot, window, at)
-    assert len(session.take) == 2 and session.draft is None
-    np.testing.assert_array_equal(session.take.weights, session.original.weights)
+    assert len(session.document.take) == 2 and session.document.draft is None
+    np.testing.assert_array_equal(session.document.take.weights, session.document.original.weights)

@@ -16,8 +16,8 @@ from pytestqt.qtbot import QtBot
 
 from app.window.main_window import MainWindow
 from engine.formats import livelink, read_take, write_take
-from engine.formats.livelink_sides import exchange
-from engine.formats.reading import Reading
+from engine.formats.base.reading import Reading
+from engine.formats.livelink.sides import exchange
 from engine.take import SHAPE_INDEX, SHAPES, Take
 from tests.films import film
 from tests.journeys.conftest import load, noted, saved_as, settled
@@ -80,20 +80,20 @@ def test_the_line_tells_rate_sides_and_reasons(qtbot: QtBot, window: MainWindow,
 
 def test_the_rate_is_changed_by_mouse_and_undone(qtbot: QtBot, window: MainWindow, leaning_file: Path) -> None:
     load(qtbot, window, leaning_file)
-    line, weights = window.importing, window.session.take.weights
+    line, weights = window.importing, window.session.document.take.weights
     index = line.rate.findText("60")
     pick(qtbot, line.rate, index)
-    assert window.session.take.fps == 60.0 and line.rate.currentText() == "60 fps"
+    assert window.session.document.take.fps == 60.0 and line.rate.currentText() == "60 fps"
     assert line.rate_reason.text() == "as asked" and "timecodes say 30" in line.rate.toolTip()
-    assert window.status["rate"].text() == "60 fps" and window.session.undo.undoText() == "rate 60 fps"
+    assert window.status["rate"].text() == "60 fps" and window.session.document.undo.undoText() == "rate 60 fps"
     assert window.curves.hasFocus()
-    np.testing.assert_array_equal(window.session.take.weights, weights)
+    np.testing.assert_array_equal(window.session.document.take.weights, weights)
     undone(window)
-    assert window.session.take.fps == 30.0 and line.rate.currentText() == "30 fps"
+    assert window.session.document.take.fps == 30.0 and line.rate.currentText() == "30 fps"
     assert window.status["rate"].text() == "30 fps" and line.rate_reason.text() == "from timecodes"
-    window.session.undo.redo()
+    window.session.document.undo.redo()
     pick(qtbot, line.rate, 0)  # automatic
-    assert window.session.take.fps == 30.0 and window.session.undo.count() == 2
+    assert window.session.document.take.fps == 30.0 and window.session.document.undo.count() == 2
 
 
 def test_the_rate_is_typed(qtbot: QtBot, window: MainWindow, leaning_file: Path) -> None:
@@ -105,30 +105,30 @@ def test_the_rate_is_typed(qtbot: QtBot, window: MainWindow, leaning_file: Path)
         typed.selectAll()
         QTest.keyClicks(typed, text)
         QTest.keyClick(typed, Qt.Key.Key_Return)
-        assert window.session.take.fps == fps
+        assert window.session.document.take.fps == fps
     for text in ("fast", "0", "nan", "1e9"):
-        steps = window.session.undo.count()
+        steps = window.session.document.undo.count()
         typed.selectAll()
         QTest.keyClicks(typed, text)
         QTest.keyClick(typed, Qt.Key.Key_Return)
-        assert window.session.take.fps == 12.5 and box.currentText() == "12.5 fps"
-        assert window.notices.isVisible() and window.session.undo.count() == steps
+        assert window.session.document.take.fps == 12.5 and box.currentText() == "12.5 fps"
+        assert window.notices.isVisible() and window.session.document.undo.count() == steps
         window.notices.hide()
 
 
 def test_the_sides_are_changed_by_mouse_and_undone(qtbot: QtBot, window: MainWindow, leaning_file: Path) -> None:
     load(qtbot, window, leaning_file)
-    line, before = window.importing, window.session.take.weights
+    line, before = window.importing, window.session.document.take.weights
     pick(qtbot, line.sides, 2)
-    np.testing.assert_array_equal(window.session.take.weights, exchange(before))
+    np.testing.assert_array_equal(window.session.document.take.weights, exchange(before))
     assert line.sides.currentText() == "as named" and "the motion says as the app records" in line.sides.toolTip()
-    assert window.session.undo.undoText() == "sides as named"
+    assert window.session.document.undo.undoText() == "sides as named"
     undone(window)
-    np.testing.assert_array_equal(window.session.take.weights, before)
+    np.testing.assert_array_equal(window.session.document.take.weights, before)
     assert line.sides.currentText() == "automatic: as the app records"
     pick(qtbot, line.sides, 1)  # the same sides, by hand
-    assert window.session.undo.undoText() == "sides as the app records"
-    np.testing.assert_array_equal(window.session.take.weights, before)
+    assert window.session.document.undo.undoText() == "sides as the app records"
+    np.testing.assert_array_equal(window.session.document.take.weights, before)
     settled(qtbot, window)
 
 
@@ -139,19 +139,19 @@ def test_the_project_remembers_both(
     noted(window, "before")
     pick(qtbot, window.importing.rate, window.importing.rate.findText("25"))
     pick(qtbot, window.importing.sides, 2)
-    weights = window.session.take.weights
+    weights = window.session.document.take.weights
     saved_as(qtbot, window, tmp_path / "a.retake", monkeypatch)
     load(qtbot, window, leaning_file)
-    assert window.session.take.fps == 30.0
+    assert window.session.document.take.fps == 30.0
     load(qtbot, window, tmp_path / "a.retake")
-    assert window.session.take.fps == 25.0 and window.importing.isHidden()
-    np.testing.assert_array_equal(window.session.take.weights, weights)
+    assert window.session.document.take.fps == 25.0 and window.importing.isHidden()
+    np.testing.assert_array_equal(window.session.document.take.weights, weights)
     window.actions_by_name["show_import"].trigger()
     assert window.importing.sides.currentText() == "as named" and window.importing.rate.currentText() == "25 fps"
     undone(window)
     undone(window)
-    assert window.session.take.fps == 30.0
-    np.testing.assert_array_equal(window.session.take.weights, exchange(weights))
+    assert window.session.document.take.fps == 30.0
+    np.testing.assert_array_equal(window.session.document.take.weights, exchange(weights))
 
 
 @pytest.mark.parametrize(("words", "sides"), [("", ""), ("as the app records", "recorded"), ("as named", "named")])
@@ -175,7 +175,7 @@ def test_the_export_asks_for_the_sides(
     QTest.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
     if sides:
         read = read_take(out, reading=Reading(sides=sides))
-        np.testing.assert_array_equal(read.weights, window.session.take.weights)
+        np.testing.assert_array_equal(read.weights, window.session.document.take.weights)
     assert (out.read_bytes() == leaning_file.read_bytes()) == (sides != "named")
     assert livelink.judged(read_take(out).origin).recorded == (sides != "named")
 
@@ -202,10 +202,10 @@ def test_any_part_of_a_take_that_is_dropped_opens_it_with_its_film(
         path = tmp_path / "Slate_1.zip"
     with qtbot.waitSignal(window.files.opened, timeout=20_000):
         dropped(window, path / file if file != "zip" else path)
-    qtbot.waitUntil(lambda: window.session.video is not None, timeout=20_000)
-    assert window.session.take.name == "Slate_1_iPhone_cal.csv" and window.importing.isVisible()
+    qtbot.waitUntil(lambda: window.session.document.video is not None, timeout=20_000)
+    assert window.session.document.take.name == "Slate_1_iPhone_cal.csv" and window.importing.isVisible()
     assert "calibrated" in window.importing.notices.toolTip()
-    assert window.session.video.suffix == ".mov"
+    assert window.session.document.video.suffix == ".mov"
     assert not window.notices.isVisible()  # that its film is silent is no fault
 
 
@@ -216,4 +216,4 @@ def test_a_folder_is_chosen_in_a_dialog(
     monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(folder))
     with qtbot.waitSignal(window.files.opened, timeout=20_000):
         window.actions_by_name["open_folder"].trigger()
-    assert window.session.path == folder / "Slate_1_iPhone_cal.csv"
+    assert window.session.document.path == folder / "Slate_1_iPhone_cal.csv"

@@ -30,7 +30,7 @@ def name_of(window: MainWindow, lane: int) -> QPoint:
 
 def assert_lanes_keep_their_places(window: MainWindow) -> None:
     curves, session = window.curves, window.session
-    assert [lane.key for lane in curves.lanes] == session.lanes
+    assert [lane.key for lane in curves.lanes] == session.view.lanes
     width, below = curves.width() - GUTTER_PX - GRID, -1.0
     for lane in curves.lanes:
         box = lane.view.geometry()
@@ -38,30 +38,32 @@ def assert_lanes_keep_their_places(window: MainWindow) -> None:
         assert (box.left(), box.width()) == (GUTTER_PX, width) and box.height() > 10
         assert box.top() > below and box.bottom() <= curves.height()
         below = box.bottom()
-        edges = [lane.view.mapViewToScene(QPointF(frame, 0.0)).x() for frame in session.view]
+        edges = [lane.view.mapViewToScene(QPointF(frame, 0.0)).x() for frame in session.view.range]
         np.testing.assert_allclose(edges, [box.left(), box.right()], atol=1.5)
         drawn = lane.reached.boundingRect()
-        assert drawn.left() <= session.view[0] + 1 and drawn.right() >= session.view[1] - 1
-    hidden = set(curves._made) - set(session.lanes)
-    assert not any(curves._made[key].view.isVisible() for key in hidden)
+        assert drawn.left() <= session.view.range[0] + 1 and drawn.right() >= session.view.range[1] - 1
+    hidden = set(curves.stack.known) - set(session.view.lanes)
+    assert not any(curves.stack.known[key].view.isVisible() for key in hidden)
 
 
 def do_something(window: MainWindow, rng: random.Random) -> None:
     session, split = window.session, window.preview.parentWidget()
     assert isinstance(split, QSplitter)
-    first = rng.uniform(0, len(session.take))
+    first = rng.uniform(0, len(session.document.take))
     rng.choice(
         (
-            lambda: session.expand(rng.randrange(FIRST_WEIGHT)),
-            lambda: QTest.mouseClick(window.curves.viewport(), LEFT, PLAIN, name_of(window, rng.choice(session.lanes))),
-            lambda: session.zoom_view(rng.choice([0.4, 0.7, 1.5, 4.0]), rng.uniform(*session.view)),
-            lambda: session.set_view(first, first + rng.uniform(8, 200)),
+            lambda: session.view.expand(rng.randrange(FIRST_WEIGHT)),
+            lambda: QTest.mouseClick(
+                window.curves.viewport(), LEFT, PLAIN, name_of(window, rng.choice(session.view.lanes))
+            ),
+            lambda: session.view.zoom(rng.choice([0.4, 0.7, 1.5, 4.0]), rng.uniform(*session.view.range)),
+            lambda: session.view.set_range(first, first + rng.uniform(8, 200)),
             lambda: split.setSizes([rng.randint(200, 900), rng.randint(200, 900)]),
             window.actions_by_name["light_theme"].trigger,
             lambda: QApplication.sendEvent(window.curves, QEvent(QEvent.Type.DevicePixelRatioChange)),
             lambda: window.resize(rng.randint(1050, 1900), rng.randint(500, 1200)),
-            lambda: session.choose_lane(rng.choice(session.lanes)),
-            lambda: session.choose_tool(rng.choice(["drag", "clean", "pin", "retarget"])),
+            lambda: session.view.choose_lane(rng.choice(session.view.lanes)),
+            lambda: session.view.choose_tool(rng.choice(["drag", "clean", "pin", "retarget"])),
             lambda: window.inspector.setVisible(not window.inspector.isVisible()),
         )
     )()
@@ -82,7 +84,7 @@ def test_lanes_keep_their_width_whatever_is_done_in_whatever_order(qtbot: QtBot,
 @pytest.mark.parametrize("eye", EYES)
 def test_an_expanded_eye_keeps_its_curves(qtbot: QtBot, window: MainWindow, eye: int) -> None:
     QTest.mouseClick(window.curves.viewport(), LEFT, PLAIN, name_of(window, eye))
-    assert set(weights_under(eye)) <= set(window.session.lanes)
+    assert set(weights_under(eye)) <= set(window.session.view.lanes)
     settled(qtbot, window)
     assert_lanes_keep_their_places(window)
     QTest.keyClick(window, Qt.Key.Key_W)
@@ -92,11 +94,11 @@ def test_an_expanded_eye_keeps_its_curves(qtbot: QtBot, window: MainWindow, eye:
 
 def test_nothing_moves_under_the_pointer_while_a_button_is_down(qtbot: QtBot, window: MainWindow) -> None:
     curves = window.curves
-    other = window.session.lanes[3]
+    other = window.session.view.lanes[3]
     before = [lane.scene_box() for lane in curves.lanes]
     at = curves.mapFromScene(before[3].center())
     QTest.mousePress(curves.viewport(), LEFT, PLAIN, at)
-    assert window.session.lane == other
+    assert window.session.view.lane == other
     qtbot.wait(250)
     assert [lane.scene_box() for lane in curves.lanes] == before
     QTest.mouseRelease(curves.viewport(), LEFT, PLAIN, at)
@@ -112,23 +114,23 @@ def test_lines_are_as_wide_on_a_finer_screen(window: MainWindow, monkeypatch: py
     QApplication.sendEvent(window.curves, QEvent(QEvent.Type.DevicePixelRatioChange))
     lines = (lane.original._pen, lane.reached._pen, lane.asked._pen, lane.removed.line.opts["pen"])
     assert {pen.widthF() for pen in lines} == {2.0}
-    window.session.expand(0)  # and so are those that come later
+    window.session.view.expand(0)  # and so are those that come later
     assert {each.reached._pen.widthF() for each in window.curves.lanes} == {2.0}
 
 
 def test_weights_that_were_put_away_are_drawn_as_they_are_by_now(qtbot: QtBot, window: MainWindow) -> None:
     session, key = window.session, weights_under(EYES[0])[0]
-    session.expand(EYES[0])
+    session.view.expand(EYES[0])
     column = key - FIRST_WEIGHT
-    session.expand(EYES[0])
+    session.view.expand(EYES[0])
     for start in (40, 200):
-        weights = session.take.weights[start : start + 8].copy()
+        weights = session.document.take.weights[start : start + 8].copy()
         weights[:, column] = 0.77
-        controls, asked = session.controls[start : start + 8], session.asked[start : start + 8]
-        lost = session.take.lost[start : start + len(weights)]
-        session.replace_rows(start, weights, controls, asked, lost)
-    session.expand(EYES[0])
+        controls, asked = session.document.controls[start : start + 8], session.document.asked[start : start + 8]
+        lost = session.document.take.lost[start : start + len(weights)]
+        session.document.replace_rows(start, weights, controls, asked, lost)
+    session.view.expand(EYES[0])
     lowest, highest = window.curves.lane(key)._curves[1]._kept()
-    blocks = session.curve(key)[:320].reshape(-1, 8)
+    blocks = session.document.curve(key)[:320].reshape(-1, 8)
     np.testing.assert_array_equal(highest[:40], blocks.max(axis=1))
     np.testing.assert_array_equal(lowest[:40], blocks.min(axis=1))

@@ -45,10 +45,10 @@ def test_a_stream_is_shown_recorded_and_opened(qtbot: QtBot, window: MainWindow)
     assert np.asarray(shown.args[0]).shape == (52,)
     assert window.preview._frame_label.text() == "live"
     sender.join(timeout=20)
-    qtbot.waitUntil(lambda: window.live._recorder is not None and len(window.live._recorder) >= 45, timeout=10_000)
+    qtbot.waitUntil(lambda: window.live.recording.frames >= 45, timeout=10_000)
     QTest.mouseClick(window.live.record_button, LEFT)
-    assert len(window.session.take) == 45 and window.session.take.name == "live"
-    np.testing.assert_allclose(window.session.take.weights, sent.weights, atol=1e-6)
+    assert len(window.session.document.take) == 45 and window.session.document.take.name == "live"
+    np.testing.assert_allclose(window.session.document.take.weights, sent.weights, atol=1e-6)
     QTest.mouseClick(window.live.listen_button, LEFT)
     assert not window.live.listening
     assert window.preview._frame_label.text() == "frame 0"
@@ -63,7 +63,7 @@ def recording(qtbot: QtBot, window: MainWindow, sent: Take) -> None:
     QTest.mouseClick(window.live.record_button, LEFT)
     sender = threading.Thread(target=replay, args=(sent, ("127.0.0.1", port)))
     sender.start()
-    qtbot.waitUntil(lambda: len(window.live._recorder or ()) >= len(sent), timeout=20_000)
+    qtbot.waitUntil(lambda: window.live.recording.frames >= len(sent), timeout=20_000)
     sender.join()
 
 
@@ -71,7 +71,7 @@ def test_a_recording_is_kept_until_it_is_saved(qtbot: QtBot, window: MainWindow)
     recording(qtbot, window, Take(weights=demo.performance().weights[:20], fps=30.0))
     with qtbot.waitSignal(window.keeper.kept, timeout=10_000):
         QTest.mouseClick(window.live.record_button, LEFT)
-    assert window.session.edited  # closing asks
+    assert window.session.document.edited  # closing asks
     assert [entry.suffix for entry in window.keeper.folder.iterdir() if entry.name[0] != "."] == [".retake"]
 
 
@@ -92,18 +92,18 @@ def test_a_window_closed_while_it_records_offers_the_recording_at_the_next_start
         keeper.open(opened(session, Wish(left.path, left_over=True)))
     finally:
         keeper.close()
-    np.testing.assert_allclose(session.take.weights, sent.weights, atol=1e-6)
+    np.testing.assert_allclose(session.document.take.weights, sent.weights, atol=1e-6)
 
 
 def test_a_recording_is_not_lost_to_a_question(
     qtbot: QtBot, window: MainWindow, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    window.session.undo.resetClean()  # edits that are not saved
+    window.session.document.undo.resetClean()  # edits that are not saved
     recording(qtbot, window, Take(weights=demo.performance().weights[:20], fps=30.0))
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Cancel)
-    before = window.session.take
+    before = window.session.document.take
     QTest.mouseClick(window.live.record_button, LEFT)
-    assert window.session.take is before and window.notices.isVisible()
+    assert window.session.document.take is before and window.notices.isVisible()
     (kept,) = window.keeper.folder.glob("*.partial.csv")
     assert len(read_take(kept)) == 20
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Discard)

@@ -44,7 +44,7 @@ def chosen(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
 def attached(qtbot: QtBot, window: MainWindow, chosen: list[Path], path: Path, kind: str = "audio") -> None:
     chosen.append(path)
     window.actions_by_name[f"attach_{kind}"].trigger()
-    qtbot.waitUntil(lambda: window.session.marks.medium(kind) is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: window.session.document.marks.medium(kind) is not None, timeout=10_000)
 
 
 def save(qtbot: QtBot, window: MainWindow, chosen: list[Path], path: Path) -> None:
@@ -67,49 +67,53 @@ def test_sound_is_attached_moved_saved_and_comes_back(
     sound = recording(tmp_path / "elsewhere" / "Ärger 顔.wav")
     attached(qtbot, window, chosen, sound)
     settled(qtbot, window)
-    assert session.undo.undoText() == "attach Ärger 顔.wav" and window.status["sound"].text() == "♪ nothing"
+    assert session.document.undo.undoText() == "attach Ärger 顔.wav" and window.status["sound"].text() == "♪ nothing"
 
     QTest.mouseMove(timeline, QPoint(round(timeline.x_of(100)), LANE_Y))
     assert timeline.cursor().shape() == Qt.CursorShape.SizeHorCursor
     QTest.mousePress(timeline, LEFT, PLAIN, QPoint(round(timeline.x_of(100)), LANE_Y))
     QTest.mouseMove(timeline, QPoint(round(timeline.x_of(110)), LANE_Y))
-    assert session.sliding is not None and session.undo.count() == 1
+    assert session.document.sliding is not None and session.document.undo.count() == 1
     QTest.mouseMove(timeline, QPoint(round(timeline.x_of(115)), LANE_Y))
     QTest.mouseRelease(timeline, LEFT, PLAIN, QPoint(round(timeline.x_of(115)), LANE_Y))
-    assert session.undo.count() == 2 and session.offset_s("audio") == pytest.approx(0.5, abs=0.04)
-    assert window.attached.boxes["audio"].milliseconds.value() == round(1e3 * session.offset_s("audio"))
+    assert session.document.undo.count() == 2 and session.document.offset_s("audio") == pytest.approx(0.5, abs=0.04)
+    assert window.attached.boxes["audio"].milliseconds.value() == round(1e3 * session.document.offset_s("audio"))
 
     box = window.attached.boxes["audio"].milliseconds
     box.selectAll()
     QTest.keyClicks(box, "250")
     QTest.keyClick(box, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: session.undo.count() == 3, timeout=10_000)
-    assert session.offset_s("audio") == 0.25 and window.attached.boxes["audio"].frames.value() == 7.5
+    qtbot.waitUntil(lambda: session.document.undo.count() == 3, timeout=10_000)
+    assert session.document.offset_s("audio") == 0.25 and window.attached.boxes["audio"].frames.value() == 7.5
     window.curves.setFocus()
     for _ in range(3):
         QTest.keyClick(window, Qt.Key.Key_Right, ALT)
-    qtbot.waitUntil(lambda: session.undo.count() == 4, timeout=10_000)
-    assert session.undo.undoText() == "move the sound to +350 ms"
-    assert session.marks.medium("audio").offset_s == pytest.approx(-0.35)
+    qtbot.waitUntil(lambda: session.document.undo.count() == 4, timeout=10_000)
+    assert session.document.undo.undoText() == "move the sound to +350 ms"
+    assert session.document.marks.medium("audio").offset_s == pytest.approx(-0.35)
     for offset_s in (0.25, pytest.approx(0.5, abs=0.04), 0.0):
         QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
-        assert session.offset_s("audio") == offset_s
+        assert session.document.offset_s("audio") == offset_s
     for _ in range(3):
-        session.undo.redo()
+        session.document.undo.redo()
 
     save(qtbot, window, chosen, tmp_path / "a project.retake")
     load(qtbot, window, demo.BUNDLED)
-    assert session.audio is None and not window.attached.isVisible()
+    assert session.document.audio is None and not window.attached.isVisible()
     load(qtbot, window, tmp_path / "a project.retake")
-    qtbot.waitUntil(lambda: session.audio is not None, timeout=10_000)
-    assert session.audio.path == sound and session.offset_s("audio") == pytest.approx(0.35)
-    assert not window.missing.isVisible() and not session.edited
+    qtbot.waitUntil(lambda: session.document.audio is not None, timeout=10_000)
+    assert session.document.audio.path == sound and session.document.offset_s("audio") == pytest.approx(0.35)
+    assert not window.missing.isVisible() and not session.document.edited
 
     QTest.mouseClick(window.attached.boxes["audio"].away, LEFT)
-    assert session.audio is None and session.marks.media == () and session.undo.undoText() == "detach Ärger 顔.wav"
+    assert (
+        session.document.audio is None
+        and session.document.marks.media == ()
+        and session.document.undo.undoText() == "detach Ärger 顔.wav"
+    )
     QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
-    qtbot.waitUntil(lambda: session.audio is not None, timeout=10_000)
-    assert session.offset_s("audio") == pytest.approx(0.35)
+    qtbot.waitUntil(lambda: session.document.audio is not None, timeout=10_000)
+    assert session.document.offset_s("audio") == pytest.approx(0.35)
 
 
 def test_a_click_on_the_waveform_goes_there_and_moves_nothing(
@@ -118,7 +122,7 @@ def test_a_click_on_the_waveform_goes_there_and_moves_nothing(
     attached(qtbot, window, chosen, recording(tmp_path / "a.wav"))
     settled(qtbot, window)
     QTest.mouseClick(window.timeline, LEFT, PLAIN, QPoint(round(window.timeline.x_of(60)), LANE_Y))
-    assert window.session.playhead == 60 and window.session.undo.count() == 1
+    assert window.session.view.playhead == 60 and window.session.document.undo.count() == 1
 
 
 def test_what_lay_beside_a_take_is_in_its_project_and_undoing_older_steps_keeps_it(
@@ -128,17 +132,19 @@ def test_what_lay_beside_a_take_is_in_its_project_and_undoing_older_steps_keeps_
     recording(tmp_path / "slate.wav")
     film(tmp_path / "slate.mp4", [round(1000 * n / 30) for n in range(60)])
     load(qtbot, window, take)
-    window.session.select((20, 40))
+    window.session.view.select((20, 40))
     window.timeline.marked.emit()  # a step from before the sound is found
-    qtbot.waitUntil(lambda: len(window.session.marks.media) == 2, timeout=10_000)
-    assert window.session.undo.count() == 1
-    window.session.undo.undo()
-    assert window.session.audio is not None and window.session.video is not None
+    qtbot.waitUntil(lambda: len(window.session.document.marks.media) == 2, timeout=10_000)
+    assert window.session.document.undo.count() == 1
+    window.session.document.undo.undo()
+    assert window.session.document.audio is not None and window.session.document.video is not None
     (tmp_path / "projects").mkdir()
     save(qtbot, window, chosen, tmp_path / "projects" / "another name.retake")
     load(qtbot, window, demo.BUNDLED)
     load(qtbot, window, tmp_path / "projects" / "another name.retake")
-    qtbot.waitUntil(lambda: window.session.audio is not None and window.session.video is not None, timeout=10_000)
+    qtbot.waitUntil(
+        lambda: window.session.document.audio is not None and window.session.document.video is not None, timeout=10_000
+    )
 
 
 def test_a_file_that_was_moved_is_located_and_another_content_is_told(
@@ -154,18 +160,20 @@ def test_a_file_that_was_moved_is_located_and_another_content_is_told(
     shutil.move(tmp_path / "p" / "a.wav", moved)
     load(qtbot, window, project)
     qtbot.waitUntil(window.missing.isVisible, timeout=10_000)
-    assert session.audio is None and session.marks.medium("audio") is not None
+    assert session.document.audio is None and session.document.marks.medium("audio") is not None
     assert window.actions_by_name["locate_media"].isEnabled()
 
     chosen.append(moved)
     QTest.mouseClick(button(window, "Locate a.wav…"), LEFT)
-    qtbot.waitUntil(lambda: session.audio is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: session.document.audio is not None, timeout=10_000)
     assert not window.missing.isVisible() and not window.notices.isVisible()
-    assert session.undo.count() == 2 and session.offset_s("audio") == 0.2  # the same file: nothing was done
+    assert (
+        session.document.undo.count() == 2 and session.document.offset_s("audio") == 0.2
+    )  # the same file: nothing was done
     qtbot.waitUntil(lambda: window.keeper._work.idle, timeout=10_000)
     load(qtbot, window, demo.BUNDLED)
     load(qtbot, window, project)
-    qtbot.waitUntil(lambda: session.audio is not None, timeout=10_000)  # and it is found there from now on
+    qtbot.waitUntil(lambda: session.document.audio is not None, timeout=10_000)  # and it is found there from now on
 
     moved.unlink()
     load(qtbot, window, demo.BUNDLED)
@@ -173,10 +181,10 @@ def test_a_file_that_was_moved_is_located_and_another_content_is_told(
     qtbot.waitUntil(window.missing.isVisible, timeout=10_000)
     chosen.append(recording(tmp_path / "other.wav", seed=1))
     QTest.mouseClick(button(window, "Locate b.wav…"), LEFT)
-    qtbot.waitUntil(lambda: session.audio is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: session.document.audio is not None, timeout=10_000)
     assert window.notices.text.text().startswith("other.wav is not the file that was attached; it is used from now on.")
-    assert session.undo.undoText() == "replace b.wav" and session.offset_s("audio") == 0.2
-    session.undo.undo()
+    assert session.document.undo.undoText() == "replace b.wav" and session.document.offset_s("audio") == 0.2
+    session.document.undo.undo()
     qtbot.waitUntil(window.missing.isVisible, timeout=10_000)
 
 
@@ -194,15 +202,15 @@ def test_a_file_that_was_cut_short_can_be_used_all_the_same_or_detached(
     qtbot.waitUntil(lambda: len(window.media.missing) == 2, timeout=10_000)
     buttons = [each for each in window.missing.findChildren(QPushButton) if each.text() == "Use it all the same"]
     QTest.mouseClick(buttons[0], LEFT)
-    qtbot.waitUntil(lambda: session.audio is not None, timeout=10_000)
-    assert 3.9 < session.audio.duration_s < 4.1 and list(window.media.missing) == ["video"]
+    qtbot.waitUntil(lambda: session.document.audio is not None, timeout=10_000)
+    assert 3.9 < session.document.audio.duration_s < 4.1 and list(window.media.missing) == ["video"]
     qtbot.waitUntil(lambda: any(each.isVisible() for each in window.missing.findChildren(QPushButton)))  # laid anew
     QTest.mouseClick(button(window, "Use it all the same"), LEFT)
     told = window.notices.text
     qtbot.waitUntil(lambda: told.text().startswith("a.mp4 could not be read"), timeout=10_000)  # half a film is none
-    assert session.video is None and window.missing.isVisible()
+    assert session.document.video is None and window.missing.isVisible()
     QTest.mouseClick(button(window, "Detach it"), LEFT)
-    assert not window.missing.isVisible() and [media.kind for media in session.marks.media] == ["audio"]
+    assert not window.missing.isVisible() and [media.kind for media in session.document.marks.media] == ["audio"]
 
 
 def test_a_reference_video_is_nudged_and_detached_beside_its_picture(
@@ -212,10 +220,10 @@ def test_a_reference_video_is_nudged_and_detached_beside_its_picture(
     attached(qtbot, window, chosen, film(tmp_path / "a.mp4", [round(1000 * n / 30) for n in range(90)]), "video")
     qtbot.waitUntil(window.reference.isVisible, timeout=10_000)
     QTest.keyClick(window, Qt.Key.Key_Left, ALT | Qt.KeyboardModifier.ShiftModifier)
-    assert session.offset_s("video") == pytest.approx(-1 / 30)
-    qtbot.waitUntil(lambda: session.undo.undoText() == "move the video to -33 ms", timeout=10_000)
+    assert session.document.offset_s("video") == pytest.approx(-1 / 30)
+    qtbot.waitUntil(lambda: session.document.undo.undoText() == "move the video to -33 ms", timeout=10_000)
     qtbot.waitUntil(lambda: not window.reference.shown.image.isNull(), timeout=10_000)
     picture: QImage = window.reference.shown.image
     assert not picture.isNull()
     window.actions_by_name["detach_video"].trigger()
-    assert not window.reference.isVisible() and session.marks.media == ()
+    assert not window.reference.isVisible() and session.document.marks.media == ()

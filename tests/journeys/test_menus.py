@@ -62,42 +62,42 @@ def curve_point(window: MainWindow, key: int, frame: float) -> QPoint:
 
 def test_a_curve_is_closed_where_it_was_clicked(qtbot: QtBot, window: MainWindow) -> None:
     menu = right_clicked(window, window.curves.viewport(), curve_point(window, 0, 60))
-    assert abs(window.session.playhead - 60) <= 1 and window.session.lane == 0
+    assert abs(window.session.view.playhead - 60) <= 1 and window.session.view.lane == 0
     chosen(qtbot, window, menu, "Close here")
-    qtbot.waitUntil(lambda: window.session.undo.index() == 1, timeout=20_000)
-    assert window.session.controls[window.session.playhead, 0] < 1.0
+    qtbot.waitUntil(lambda: window.session.document.undo.index() == 1, timeout=20_000)
+    assert window.session.document.controls[window.session.view.playhead, 0] < 1.0
     settled(qtbot, window)
 
 
 def test_the_name_of_a_curve_shows_its_weights(qtbot: QtBot, window: MainWindow) -> None:
     at = curve_point(window, 1, 60)
     menu = right_clicked(window, window.curves.viewport(), QPoint(20, at.y()))
-    assert window.session.lane == 1 and window.session.expanded == frozenset()
+    assert window.session.view.lane == 1 and window.session.view.expanded == frozenset()
     chosen(qtbot, window, menu, "Show or hide the weights below")
-    assert window.session.expanded == {1}
+    assert window.session.view.expanded == {1}
 
 
 def test_notes_are_changed_and_deleted_and_all_of_it_undone(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
-    session.move_playhead(100)
+    session.view.move_playhead(100)
     noted(window, "lips miss the b")
-    session.move_playhead(0)
+    session.view.move_playhead(0)
     menu = right_clicked(window, window.timeline, lane_point(window, "notes", 100) + QPoint(3, 0))
-    assert session.playhead == 100 and titles(menu)[0] == "lips miss the b"
+    assert session.view.playhead == 100 and titles(menu)[0] == "lips miss the b"
     chosen(qtbot, window, menu, "Edit the note here")
     assert window.notes.entry.text() == "lips miss the b"
     QTest.keyClick(window.notes.entry, Qt.Key.Key_Escape)
-    assert session.marks.notes[0].text == "lips miss the b" and window.notes.entry.text() == ""
+    assert session.document.marks.notes[0].text == "lips miss the b" and window.notes.entry.text() == ""
     QTest.keyClick(window.curves, Qt.Key.Key_N, Qt.KeyboardModifier.ShiftModifier)
     QTest.keyClicks(window.notes.entry, "lips close late")
     QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
-    assert [(note.frame, note.text) for note in session.marks.notes] == [(100, "lips close late")]
+    assert [(note.frame, note.text) for note in session.document.marks.notes] == [(100, "lips close late")]
     button = listed(qtbot, window.notes, "lips")
     chosen(qtbot, window, right_clicked(window, button, QPoint(5, 5)), "Delete the note here")
-    assert session.marks.notes == () and session.undo.undoText() == "delete a note"
-    session.undo.undo()
-    session.undo.undo()
-    assert [note.text for note in session.marks.notes] == ["lips miss the b"]
+    assert session.document.marks.notes == () and session.document.undo.undoText() == "delete a note"
+    session.document.undo.undo()
+    session.document.undo.undo()
+    assert [note.text for note in session.document.marks.notes] == ["lips miss the b"]
 
 
 def test_emptying_a_note_deletes_it_and_one_that_is_undone_meanwhile_is_not_changed(
@@ -105,58 +105,60 @@ def test_emptying_a_note_deletes_it_and_one_that_is_undone_meanwhile_is_not_chan
 ) -> None:
     noted(window, "first")
     window.marks.edit_note()
-    window.session.undo.undo()
+    window.session.document.undo.undo()
     assert window.notes.entry.text() == ""
-    window.session.undo.redo()
+    window.session.document.undo.redo()
     window.marks.edit_note()
     window.notes.entry.clear()
     QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
-    assert window.session.marks.notes == () and window.session.undo.undoText() == "delete a note"
+    assert window.session.document.marks.notes == () and window.session.document.undo.undoText() == "delete a note"
 
 
 def test_a_pin_is_removed_and_comes_back(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
-    pinned = replace(session.marks, pins=(Pin(40, {"jawOpen": 0.4}, 30, 50),))
-    session.undo.push(MarkCommand(session, pinned, "pin"))
+    pinned = replace(session.document.marks, pins=(Pin(40, {"jawOpen": 0.4}, 30, 50),))
+    session.document.undo.push(MarkCommand.of(session.document, pinned, "pin"))
     menu = right_clicked(window, window.timeline, lane_point(window, "pins", 40))
-    assert session.playhead == 40
+    assert session.view.playhead == 40
     chosen(qtbot, window, menu, "Remove the pin here")
-    assert session.marks.pins == ()
-    session.undo.undo()
-    assert session.marks.pins == pinned.pins
+    assert session.document.marks.pins == ()
+    session.document.undo.undo()
+    assert session.document.marks.pins == pinned.pins
 
 
 def test_a_span_is_unmarked_from_its_lane_and_from_the_list(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
-    before = session.marks
-    session.undo.push(MarkCommand(session, replace(before, spans=(Span(20, 40), *before.spans)), "mark a span"))
+    before = session.document.marks
+    session.document.undo.push(
+        MarkCommand.of(session.document, replace(before, spans=(Span(20, 40), *before.spans)), "mark a span")
+    )
     menu = right_clicked(window, window.timeline, lane_point(window, "spans", 30))
-    assert session.selection == (20, 40) and "Fill the span" in titles(menu)
+    assert session.view.selection == (20, 40) and "Fill the span" in titles(menu)
     chosen(qtbot, window, menu, "Unmark the span")
-    assert session.marks == before
-    session.undo.undo()
+    assert session.document.marks == before
+    session.document.undo.undo()
     button = listed(qtbot, window.spans, "20 frames")
     menu = right_clicked(window, button, QPoint(4, 4))
     chosen(qtbot, window, menu, "Unmark the span")
-    assert session.marks == before
+    assert session.document.marks == before
 
 
 def test_a_flag_says_what_it_is_however_one_comes_to_it(qtbot: QtBot, window: MainWindow) -> None:
     session, section = window.session, window.flags
-    flag = (session.flags or ())[0]
+    flag = (session.document.flags or ())[0]
     QTest.keyClick(window.curves, Qt.Key.Key_Down)
-    assert session.playhead == flag.start
+    assert session.view.playhead == flag.start
     assert window.status["notice"].text() == section.here.text() == flag.sentence
     assert section.list.currentRow() == 0 and "1 finding" in section.count.text()
-    session.move_playhead(0)
+    session.view.move_playhead(0)
     assert section.here.isHidden()
     item = section.list.visualItemRect(section.list.item(0)).center()
     window.inspector.findChild(QScrollArea).ensureWidgetVisible(section.list)
     QTest.mouseClick(section.list.viewport(), Qt.MouseButton.LeftButton, pos=item)
-    assert session.playhead == flag.start and section.here.text() == flag.sentence
-    session.move_playhead(0)
+    assert session.view.playhead == flag.start and section.here.text() == flag.sentence
+    session.view.move_playhead(0)
     menu = right_clicked(window, window.timeline, lane_point(window, "flags", flag.start))
-    assert session.playhead == flag.start and titles(menu)[0].startswith(flag.sentence[:20])
+    assert session.view.playhead == flag.start and titles(menu)[0].startswith(flag.sentence[:20])
     menu.close()
 
 
@@ -181,10 +183,10 @@ def test_the_face_is_seen_as_recorded_and_a_right_drag_still_pans(qtbot: QtBot, 
 
 
 def test_the_menu_key_offers_all_that_is_at_the_playhead(qtbot: QtBot, window: MainWindow) -> None:
-    window.session.move_playhead(50)
+    window.session.view.move_playhead(50)
     noted(window, "here")
     menu = right_clicked(window, window.curves.viewport(), QPoint(1, 1), Reason.Keyboard)
-    assert {"Edit the note here", "Close here", "Copy"} <= set(titles(menu)) and window.session.playhead == 50
+    assert {"Edit the note here", "Close here", "Copy"} <= set(titles(menu)) and window.session.view.playhead == 50
     menu.close()
 
 
@@ -192,21 +194,21 @@ def test_a_label_of_retargeting_has_a_menu(qtbot: QtBot, window: MainWindow) -> 
     labels = window.retarget.panel.labels
     labels._lay_out_list([30])
     menu = right_clicked(window, labels.frames[30], QPoint(3, 3))
-    assert window.session.playhead == 30 and "Remove the label of this frame" in titles(menu)
+    assert window.session.view.playhead == 30 and "Remove the label of this frame" in titles(menu)
     menu.close()
 
 
 def test_the_wheel_scrolls_the_lanes_and_zooms_with_ctrl(qtbot: QtBot, window: MainWindow) -> None:
     for lane in range(4):
-        window.session.expand(lane)
+        window.session.view.expand(lane)
     settled(qtbot, window)
     area = window.curves.parentWidget().parentWidget()
     assert isinstance(area, QScrollArea) and area.verticalScrollBar().maximum() > 0
-    view = window.session.view
+    view = window.session.view.range
     turned(window, Qt.KeyboardModifier.NoModifier)
-    assert area.verticalScrollBar().value() > 0 and window.session.view == view
+    assert area.verticalScrollBar().value() > 0 and window.session.view.range == view
     turned(window, Qt.KeyboardModifier.ControlModifier, notches=1)
-    assert window.session.view != view
+    assert window.session.view.range != view
 
 
 def turned(window: MainWindow, modifier: Qt.KeyboardModifier, notches: int = -1) -> None:
@@ -218,31 +220,31 @@ def turned(window: MainWindow, modifier: Qt.KeyboardModifier, notches: int = -1)
 @pytest.mark.parametrize("key", [Qt.Key.Key_K, Qt.Key.Key_Space])
 def test_k_plays_and_pauses(qtbot: QtBot, window: MainWindow, key: Qt.Key) -> None:
     QTest.keyClick(window.curves, key)
-    assert window.transport.playing and window.session.tool == "drag"
+    assert window.transport.playing and window.session.view.tool == "drag"
     QTest.keyClick(window.curves, key)
     assert not window.transport.playing
 
 
 def test_a_fill_that_is_kept_is_no_span_to_work_on(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
-    (lost,) = (span for span in session.marks.spans if span.kind == "lost")
-    assert session.open_spans == session.marks.spans
-    session.select((lost.start, lost.stop))
+    (lost,) = (span for span in session.document.marks.spans if span.kind == "lost")
+    assert session.document.open_spans == session.document.marks.spans
+    session.view.select((lost.start, lost.stop))
     window.spans.style_box.setCurrentText("a smooth bridge")
     window.spans.fill()
     qtbot.waitUntil(lambda: bool(window.filling.variants), timeout=60_000)
     window.filling.accept()
-    assert lost in session.marks.spans and lost not in session.open_spans
+    assert lost in session.document.marks.spans and lost not in session.document.open_spans
     assert window.curves._underlay.spans == []
     listed(qtbot, window.spans, "filled")
-    session.undo.undo()
-    assert lost in session.open_spans and len(window.curves._underlay.spans) == 1
+    session.document.undo.undo()
+    assert lost in session.document.open_spans and len(window.curves._underlay.spans) == 1
     settled(qtbot, window)
 
 
 def test_hostile_region_and_many_spans_are_told_in_time(window: MainWindow) -> None:
-    spans = tuple(Span(frame, frame + 1, kind="lost") for frame in range(len(window.session.take)))
-    window.session.set_marks(replace(window.session.marks, spans=spans, notes=(Note(0, "", "", ""),)))
+    spans = tuple(Span(frame, frame + 1, kind="lost") for frame in range(len(window.session.document.take)))
+    window.session.document.set_marks(replace(window.session.document.marks, spans=spans, notes=(Note(0, "", "", ""),)))
     window.session.changed.emit(Change.CURVES)
-    lost = int(window.session.take.lost.sum())
-    assert len(window.session.open_spans) == lost
+    lost = int(window.session.document.take.lost.sum())
+    assert len(window.session.document.open_spans) == lost

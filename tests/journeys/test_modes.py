@@ -22,105 +22,108 @@ def pull(
     qtbot: QtBot, window: MainWindow, frame: int, by_mm: float, *, release: bool = True, lane: int = WIDTH
 ) -> None:
     area, shown = window.curves.viewport(), window.curves.lane(lane)
-    value = float(window.session.controls[frame, lane])
+    value = float(window.session.document.controls[frame, lane])
     ends = [window.curves.mapFromScene(QPointF(shown.x_of(frame), shown.y_of(v))) for v in (value, value + by_mm)]
     QTest.mousePress(area, LEFT, PLAIN, ends[0])
     QTest.mouseMove(area, ends[1])
-    qtbot.waitUntil(lambda: window.session.draft is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: window.session.document.draft is not None, timeout=10_000)
     if release:
-        steps = window.session.undo.index()
+        steps = window.session.document.undo.index()
         QTest.mouseRelease(area, LEFT, PLAIN, ends[1])
-        qtbot.waitUntil(lambda: window.session.undo.index() == steps + 1, timeout=10_000)
+        qtbot.waitUntil(lambda: window.session.document.undo.index() == steps + 1, timeout=10_000)
     settled(qtbot, window)
 
 
 def test_a_session_begins_with_the_engines_default(window: MainWindow) -> None:
-    assert window.session.believability == DEFAULT_BELIEVABILITY
+    assert window.session.view.believability == DEFAULT_BELIEVABILITY
     assert window.brush.believability.value() == round(100 * DEFAULT_BELIEVABILITY)
     assert not window.actions_by_name["hit_exactly"].isChecked()
 
 
 def test_keys_and_slider_say_the_same(window: MainWindow) -> None:
     QTest.keyClick(window, Qt.Key.Key_E, SHIFT)
-    assert window.session.believability == 0.0 and window.brush.believability.value() == 0
+    assert window.session.view.believability == 0.0 and window.brush.believability.value() == 0
     assert window.actions_by_name["hit_exactly"].isChecked()
     window.brush.believability.setValue(80)
-    assert window.session.believability == 0.8 and not window.actions_by_name["hit_exactly"].isChecked()
+    assert window.session.view.believability == 0.8 and not window.actions_by_name["hit_exactly"].isChecked()
 
 
 def test_what_is_not_reached_is_told_with_the_click_that_reaches_it(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
     window.brush.believability.setValue(100)
-    session.choose_lane(WIDTH)
-    session.move_playhead(150)
+    session.view.choose_lane(WIDTH)
+    session.view.move_playhead(150)
     window.edits.set_value(30.0)
-    qtbot.waitUntil(lambda: session.undo.index() == 1, timeout=10_000)
-    edit, title = session.contents().edits[-1], session.undo.undoText()
+    qtbot.waitUntil(lambda: session.document.undo.index() == 1, timeout=10_000)
+    edit, title = session.document.contents().edits[-1], session.document.undo.undoText()
     assert edit.inputs["believability"] == 1.0
     assert window.facts.again_button.isHidden() and not window.facts.reach_button.isHidden()
     assert "neither this take nor the recordings go further" in window.facts.told.text()
-    assert f"{session.controls[150, WIDTH]:.1f} mm of {session.asked[150, WIDTH]:.1f} asked" in window.facts.told.text()
-    short = abs(session.asked[150, WIDTH] - session.controls[150, WIDTH])
-    believable = session.take.weights.copy()
+    assert (
+        f"{session.document.controls[150, WIDTH]:.1f} mm of {session.document.asked[150, WIDTH]:.1f} asked"
+        in window.facts.told.text()
+    )
+    short = abs(session.document.asked[150, WIDTH] - session.document.controls[150, WIDTH])
+    believable = session.document.take.weights.copy()
 
     window.facts.reach_button.click()
-    qtbot.waitUntil(lambda: session.undo.index() == 1 and session.draft is None, timeout=10_000)
+    qtbot.waitUntil(lambda: session.document.undo.index() == 1 and session.document.draft is None, timeout=10_000)
     settled(qtbot, window)
-    assert session.undo.count() == 1 and session.undo.undoText() == title
-    assert session.contents().edits[-1].inputs["believability"] == 0.0 and window.facts.reach_button.isHidden()
-    assert abs(session.asked[150, WIDTH] - session.controls[150, WIDTH]) < 0.6 * short
+    assert session.document.undo.count() == 1 and session.document.undo.undoText() == title
+    assert session.document.contents().edits[-1].inputs["believability"] == 0.0 and window.facts.reach_button.isHidden()
+    assert abs(session.document.asked[150, WIDTH] - session.document.controls[150, WIDTH]) < 0.6 * short
 
     window.brush.believability.setValue(100)
     window.facts.again_button.click()
-    qtbot.waitUntil(lambda: session.undo.index() == 1 and session.draft is None, timeout=10_000)
+    qtbot.waitUntil(lambda: session.document.undo.index() == 1 and session.document.draft is None, timeout=10_000)
     settled(qtbot, window)
-    np.testing.assert_array_equal(session.take.weights, believable)
+    np.testing.assert_array_equal(session.document.take.weights, believable)
 
 
 def test_the_face_changes_under_the_hand_with_the_slider(qtbot: QtBot, window: MainWindow) -> None:
     window.brush.believability.setValue(100)
     pull(qtbot, window, 150, -14.0, release=False)
-    draft = window.session.draft
+    draft = window.session.document.draft
     assert draft is not None
     window.brush.believability.setValue(0)
-    qtbot.waitUntil(lambda: window.session.draft is not draft, timeout=10_000)
-    assert np.abs(window.session.draft.weights - draft.weights).max() > 0.01
+    qtbot.waitUntil(lambda: window.session.document.draft is not draft, timeout=10_000)
+    assert np.abs(window.session.document.draft.weights - draft.weights).max() > 0.01
     window.edits.cancel()
 
 
 def test_dragging_back_brings_back_bit_for_bit(qtbot: QtBot, window: MainWindow) -> None:
     """Two strokes are one wish of the take below; a second curve in between stays as it was asked."""
     session = window.session
-    before = session.take.weights.copy()
-    window.session.set_brush(radius_s=1 / 3)
+    before = session.document.take.weights.copy()
+    window.session.view.set_brush(radius_s=1 / 3)
     pull(qtbot, window, 150, 4.0)
-    first = session.take.weights.copy()
+    first = session.document.take.weights.copy()
     assert np.abs(first - before).max() > 0.01
     start, stop = 120, 180
-    window.inference.ask(start, session.original_controls[start:stop].copy())
+    window.inference.ask(start, session.document.original_controls[start:stop].copy())
     window.inference.finish("drag back")
-    qtbot.waitUntil(lambda: session.undo.index() == 2, timeout=10_000)
-    np.testing.assert_array_equal(session.take.weights, before)
-    session.undo.undo()
-    np.testing.assert_array_equal(session.take.weights, first)
+    qtbot.waitUntil(lambda: session.document.undo.index() == 2, timeout=10_000)
+    np.testing.assert_array_equal(session.document.take.weights, before)
+    session.document.undo.undo()
+    np.testing.assert_array_equal(session.document.take.weights, first)
 
 
 def test_a_further_curve_gets_a_lane_and_is_dragged(qtbot: QtBot, window: MainWindow) -> None:
     session, brow = window.session, ALL_INDEX["brow_inner"]
-    assert brow not in session.lanes
+    assert brow not in session.view.lanes
     next(entry for entry in window.brush.more.menu().actions() if entry.data() == brow).trigger()
     settled(qtbot, window)
     qtbot.waitUntil(lambda: window.curves.lane(brow).scene_box().width() > 100)
-    assert session.lane == brow
+    assert session.view.lane == brow
     mouth = [index for index, name in enumerate(SHAPES) if name.startswith(("mouth", "jaw"))]
-    kept, value = session.take.weights[:, mouth].copy(), session.controls[150, brow]
+    kept, value = session.document.take.weights[:, mouth].copy(), session.document.controls[150, brow]
     pull(qtbot, window, 150, 2.0, lane=brow)
-    assert session.controls[150, brow] > value + 1.5
-    np.testing.assert_array_equal(session.take.weights[:, mouth], kept)
+    assert session.document.controls[150, brow] > value + 1.5
+    np.testing.assert_array_equal(session.document.take.weights[:, mouth], kept)
 
 
 def test_a_step_that_asked_for_no_curve_is_not_made_again(qtbot: QtBot, window: MainWindow) -> None:
     told: list[str] = []
     window.edits.told.connect(told.append)
     QTest.keyClick(window, Qt.Key.Key_R, CTRL)
-    assert told == ["the last step asked for no curve"] and window.session.undo.count() == 0
+    assert told == ["the last step asked for no curve"] and window.session.document.undo.count() == 0

@@ -58,17 +58,17 @@ def test_the_only_span_is_filled_without_choosing_it_and_enter_in_an_entry_keeps
     session = window.session
     QTest.keyClick(window, Qt.Key.Key_F)
     qtbot.waitUntil(lambda: bool(window.filling.variants), timeout=60_000)
-    assert session.selection == (session.marks.spans[0].start, session.marks.spans[0].stop)
+    assert session.view.selection == (session.document.marks.spans[0].start, session.document.marks.spans[0].stop)
     assert not window.notices.isVisible()
     window.notes.entry.setFocus()
     noted(window, "lost here")
-    assert [note.text for note in session.marks.notes] == ["lost here"]
+    assert [note.text for note in session.document.marks.notes] == ["lost here"]
     window.brush.radius.setFocus()
     QTest.keyClick(window.brush.radius, Qt.Key.Key_Return)
-    assert window.filling.variants and session.take.weights is session.original.weights
+    assert window.filling.variants and session.document.take.weights is session.document.original.weights
     window.curves.setFocus()
     QTest.keyClick(window.curves, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: session.undo.count() == 2, timeout=10_000)
+    qtbot.waitUntil(lambda: session.document.undo.count() == 2, timeout=10_000)
     settled(qtbot, window)
 
 

@@ -15,17 +15,17 @@ from tests.journeys.conftest import load, noted
 
 def test_a_note_is_typed_shown_saved_and_taken_back(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
     session, height = window.session, window.timeline.sizeHint().height()
-    session.move_playhead(120)
+    session.view.move_playhead(120)
     QTest.keyClick(window, Qt.Key.Key_N)
     noted(window, "lips miss the b")
-    (note,) = session.marks.notes
+    (note,) = session.document.marks.notes
     assert (note.frame, note.text) == (120, "lips miss the b")
     assert window.timeline.sizeHint().height() > height
     with qtbot.waitSignal(window.keeper.saved, timeout=10_000):
         window.keeper.save_as(tmp_path / "noted.retake")
     load(qtbot, window, demo.BUNDLED)
-    assert session.marks.notes == ()
+    assert session.document.marks.notes == ()
     load(qtbot, window, tmp_path / "noted.retake")
-    assert session.marks.notes == (note,)
-    session.undo.undo()
-    assert session.marks.notes == ()
+    assert session.document.marks.notes == (note,)
+    session.document.undo.undo()
+    assert session.document.marks.notes == ()

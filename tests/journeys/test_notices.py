@@ -24,12 +24,12 @@ from tests.journeys.conftest import noted
 
 
 def test_escape_puts_a_notice_away_before_the_selection(window: MainWindow) -> None:
-    window.session.select((10, 20))
+    window.session.view.select((10, 20))
     window.notices.tell("take.csv is not a take.", "Export it again.")
     QTest.keyClick(window.curves, Qt.Key.Key_Escape)
-    assert not window.notices.isVisible() and window.session.selection == (10, 20)
+    assert not window.notices.isVisible() and window.session.view.selection == (10, 20)
     QTest.keyClick(window.curves, Qt.Key.Key_Escape)
-    assert window.session.selection is None
+    assert window.session.view.selection is None
 
 
 def test_the_button_puts_it_away(window: MainWindow) -> None:
@@ -67,7 +67,9 @@ def test_an_export_says_what_it_wrote_and_what_is_not_in_it(
     assert window.files.export()
     assert window.notices.text.text() == "Wrote out.csv: 322 frames at 30 fps, 00:00:10:22."
     noted(window, "late")
-    window.session.set_marks(replace(window.session.marks, spans=(*window.session.marks.spans, Span(3, 9))))
+    window.session.document.set_marks(
+        replace(window.session.document.marks, spans=(*window.session.document.marks.spans, Span(3, 9)))
+    )
     assert window.files.export() and len(read_take(path)) == 322
     told = window.notices.text.text()
     assert told.endswith(
@@ -75,24 +77,24 @@ def test_an_export_says_what_it_wrote_and_what_is_not_in_it(
     )
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(tmp_path / "kept.retake"), ""))
     assert window.files.save()
-    qtbot.waitUntil(lambda: not window.session.edited)
+    qtbot.waitUntil(lambda: not window.session.document.edited)
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, **__: (str(path), ""))
     assert window.files.export()
     assert window.notices.text.text() == "Wrote out.csv: 322 frames at 30 fps, 00:00:10:22."
 
 
 def test_sound_that_goes_on_after_the_take_is_said(qtbot: QtBot, window: MainWindow) -> None:
-    rate, length_s = 8000, window.session.take.duration_s
+    rate, length_s = 8000, window.session.document.take.duration_s
     longer = Audio(np.zeros(round(rate * (length_s + 2.0)), np.float32), rate)
-    window.session.attach_audio(longer)
+    window.session.document.attach_audio(longer)
     told = "The sound goes on 2.0 s after the take's end; that is not heard."
     assert window.status["notice"].text() == told
-    window.session.slide("audio", -1.0)
-    assert window.session.offset_s("audio") == -1.0
+    window.session.document.slide("audio", -1.0)
+    assert window.session.document.offset_s("audio") == -1.0
     fitting = Audio(np.zeros(round(rate * length_s), np.float32), rate)
     window.status.tell("")
-    window.session.slide("audio", None)
-    window.session.attach_audio(fitting)
+    window.session.document.slide("audio", None)
+    window.session.document.attach_audio(fitting)
     assert window.status["notice"].text() == ""
 
 
@@ -106,7 +108,7 @@ def test_a_key_that_is_changed_counts_at_once(qtbot: QtBot, window: MainWindow) 
     window.activateWindow()
     qtbot.waitUntil(window.isActiveWindow)
     QTest.keyClick(window.curves, Qt.Key.Key_F6)
-    assert window.session.tool == "mark"
+    assert window.session.view.tool == "mark"
     window.menus.use_preset("Maya")
     assert window.actions_by_name["mark_tool"].shortcut().toString() == "F6"
 

@@ -76,19 +76,23 @@ def test_the_open_take_is_worked_on_until_the_next_one_is_there(
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(files[0]), ""))
     QTest.keyClick(window, Qt.Key.Key_O, Qt.KeyboardModifier.ControlModifier)
     reading(qtbot, window, files[0])
-    session, before = window.session, window.session.playhead
+    session, before = window.session, window.session.view.playhead
     QTest.keyClick(window, Qt.Key.Key_Right)
-    assert session.path == demo.BUNDLED and session.playhead == before + 1
+    assert session.document.path == demo.BUNDLED and session.view.playhead == before + 1
     with qtbot.waitSignal(window.files.opened, timeout=10_000):
         disk.go_on.set()
-    assert session.path == files[0] and session.playhead == 0 and window.windowTitle().startswith(files[0].name)
+    assert (
+        session.document.path == files[0]
+        and session.view.playhead == 0
+        and window.windowTitle().startswith(files[0].name)
+    )
     assert not window.status.opening.isVisible() and window.status["saved"].text() == ""
 
 
 def test_reading_is_stopped_by_its_button_and_the_open_take_stays(
     qtbot: QtBot, window: MainWindow, disk: SlowDisk, files: tuple[Path, Path]
 ) -> None:
-    take = window.session.take
+    take = window.session.document.take
     dropped(window, files[0])
     reading(qtbot, window, files[0])
     QTest.mouseClick(window.status.opening.button, Qt.MouseButton.LeftButton)
@@ -96,21 +100,21 @@ def test_reading_is_stopped_by_its_button_and_the_open_take_stays(
     qtbot.waitUntil(lambda: disk.ended == [files[0].name], timeout=5_000)
     disk.go_on.set()
     settled(qtbot, window)
-    assert window.session.take is take and not window.notices.isVisible()
+    assert window.session.document.take is take and not window.notices.isVisible()
 
 
 def test_the_newest_of_two_files_is_opened(
     qtbot: QtBot, window: MainWindow, disk: SlowDisk, files: tuple[Path, Path]
 ) -> None:
     opened: list[Path | None] = []
-    window.files.opened.connect(lambda: opened.append(window.session.path))
+    window.files.opened.connect(lambda: opened.append(window.session.document.path))
     dropped(window, files[0])
     reading(qtbot, window, files[0])
     dropped(window, files[1])
     qtbot.waitUntil(lambda: disk.ended == [files[0].name], timeout=5_000)
     reading(qtbot, window, files[1])
     disk.go_on.set()
-    qtbot.waitUntil(lambda: window.session.path == files[1], timeout=10_000)
+    qtbot.waitUntil(lambda: window.session.document.path == files[1], timeout=10_000)
     assert opened == [files[1]]
 
 
@@ -135,7 +139,11 @@ def test_a_project_that_is_open_can_be_opened_again_and_stays_its_file(
     qtbot: QtBot, window: MainWindow, project: Path
 ) -> None:
     load(qtbot, window, project)
-    assert window.keeper.path == project and not window.session.edited and len(window.session.marks.notes) == 1
+    assert (
+        window.keeper.path == project
+        and not window.session.document.edited
+        and len(window.session.document.marks.notes) == 1
+    )
     with qtbot.waitSignal(window.keeper.kept, timeout=10_000):
         noted(window, "two")
     window.close()
@@ -154,8 +162,8 @@ def test_a_project_that_cannot_be_read_again_leaves_its_work_kept_elsewhere(
     monkeypatch.setattr(window.keeper, "release", damaged)
     with qtbot.waitSignals([window.files.told, window.keeper.kept], timeout=10_000):
         window.load(project)
-    assert window.session.edited and len(window.session.marks.notes) == 1
+    assert window.session.document.edited and len(window.session.document.marks.notes) == 1
     (left,) = (tmp_path / "unsaved").glob("*.retake")
-    window.session.undo.setClean()
+    window.session.document.undo.setClean()
     window.close()
     assert [note.text for note in Project.open(left).contents.marks.notes] == ["one"]

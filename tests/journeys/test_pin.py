@@ -30,7 +30,7 @@ def face_shown(window: MainWindow) -> np.ndarray:
 
 def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
-    session.move_playhead(80)
+    session.view.move_playhead(80)
     QTest.keyClick(window, Qt.Key.Key_P)
     settled(qtbot, window)
     assert "Move a slider" in window.pins.hint.text() and window.pins.hint.y() < window.pins.before.y()  # read first
@@ -38,16 +38,16 @@ def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtB
     for name in ("mouthSmileLeft", "mouthSmileRight"):
         press(window.pins.sliders[name], Qt.Key.Key_Home)
         press(window.pins.sliders[name], Qt.Key.Key_PageUp, times=14)
-        qtbot.waitUntil(lambda: session.draft is not None, timeout=20_000)
+        qtbot.waitUntil(lambda: session.document.draft is not None, timeout=20_000)
     settled(qtbot, window)
-    narrow = session.draft
+    narrow = session.document.draft
     for box in (window.pins.before, window.pins.after):
         box.setFocus()
         box.selectAll()
         QTest.keyClicks(box, "25")
         QTest.keyClick(box, Qt.Key.Key_Tab)
     settled(qtbot, window)
-    wide = session.draft
+    wide = session.document.draft
     assert narrow is not None and wide is not None and (wide.start, wide.stop) == (55, 106)
     assert narrow.start > 55 and narrow.stop < 106
     np.testing.assert_allclose(wide.weights[25, SMILE], narrow.weights[80 - narrow.start, SMILE])
@@ -62,26 +62,28 @@ def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtB
     settled(qtbot, window)
     np.testing.assert_allclose(face_shown(window), smiling, atol=3)
     QTest.mouseClick(window.pins.keep_button, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: session.undo.index() == 1, timeout=10_000)
+    qtbot.waitUntil(lambda: session.document.undo.index() == 1, timeout=10_000)
 
-    smile, before = session.take.weights[:, SMILE], session.original.weights[:, SMILE]
+    smile, before = session.document.take.weights[:, SMILE], session.document.original.weights[:, SMILE]
     assert smile[80] == 0.7
     gain = smile - before
     assert 0.1 < gain[68] < gain[80] and 0.1 < gain[92] < gain[80]
-    np.testing.assert_array_equal(session.take.weights[:55], session.original.weights[:55])
-    np.testing.assert_array_equal(session.take.weights[106:], session.original.weights[106:])
-    speech = np.corrcoef(session.controls[55:106, LIPS], session.original_controls[55:106, LIPS])[0, 1]
+    np.testing.assert_array_equal(session.document.take.weights[:55], session.document.original.weights[:55])
+    np.testing.assert_array_equal(session.document.take.weights[106:], session.document.original.weights[106:])
+    speech = np.corrcoef(session.document.controls[55:106, LIPS], session.document.original_controls[55:106, LIPS])[
+        0, 1
+    ]
     assert speech > 0.9
-    assert [pin.frame for pin in session.marks.pins] == [80]
+    assert [pin.frame for pin in session.document.marks.pins] == [80]
 
     QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
-    np.testing.assert_array_equal(session.take.weights, session.original.weights)
-    assert session.marks.pins == ()
+    np.testing.assert_array_equal(session.document.take.weights, session.document.original.weights)
+    assert session.document.marks.pins == ()
 
 
 def test_dropping_a_pin_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWindow) -> None:
     QTest.keyClick(window, Qt.Key.Key_P)
     press(next(iter(window.pins.sliders.values())), Qt.Key.Key_End)
-    qtbot.waitUntil(lambda: window.session.draft is not None, timeout=20_000)
+    qtbot.waitUntil(lambda: window.session.document.draft is not None, timeout=20_000)
     QTest.mouseClick(window.pins.drop_button, Qt.MouseButton.LeftButton)
-    assert window.session.draft is None and window.session.undo.count() == 0
+    assert window.session.document.draft is None and window.session.document.undo.count() == 0

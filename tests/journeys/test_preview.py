@@ -54,10 +54,16 @@ def test_until_the_new_picture_comes_the_old_one_keeps_its_proportions(window: M
 
 def test_holding_b_draws_no_coarse_picture_and_nothing_twice(qtbot: QtBot, window: MainWindow) -> None:
     preview, session = window.preview, window.session
-    session.move_playhead(30)
-    weights = session.take.weights[:1].copy()
+    session.view.move_playhead(30)
+    weights = session.document.take.weights[:1].copy()
     weights[:] = 0.4
-    session.replace_rows(session.playhead, weights, session.controls[:1], session.asked[:1], session.take.lost[:1])
+    session.document.replace_rows(
+        session.view.playhead,
+        weights,
+        session.document.controls[:1],
+        session.document.asked[:1],
+        session.document.take.lost[:1],
+    )
     settled(qtbot, window)
     preview._spent_ms = preview._quick_ms = 1e3  # as on a slow machine, where what moves is drawn in blocks
     shown: list[tuple[int, str]] = []

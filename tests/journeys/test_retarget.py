@@ -35,7 +35,7 @@ def broad_head(tmp_path: Path) -> Path:
 
 def retargeted(qtbot: QtBot, window: MainWindow) -> None:
     state = window.retarget.retargeting
-    qtbot.waitUntil(lambda: state.idle and not state.opening, timeout=60_000)
+    qtbot.waitUntil(lambda: state.idle and not state.choosing.opening, timeout=60_000)
     settled(qtbot, window)
 
 
@@ -81,7 +81,7 @@ def test_a_take_is_carried_to_another_head_and_back(
     session, retarget, face = window.session, window.retarget, window.preview.face
     take = read_take(demo.BUNDLED)
     session.open(Take(take.weights[60:100], take.fps), None)  # short, so that solving it takes no minute
-    session.move_playhead(FRAME)
+    session.view.move_playhead(FRAME)
     alone = window.preview.width()
     QTest.keyClick(window, Qt.Key.Key_T)
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(broad_head), ""))
@@ -95,24 +95,26 @@ def test_a_take_is_carried_to_another_head_and_back(
     before = retarget.retargeting.target.places["chin"]
     place_the_chin(qtbot, window)
 
-    steps = session.undo.count()
+    steps = session.document.undo.count()
     QTest.keyClick(window, Qt.Key.Key_Return, CONTROL)
     assert retarget.retargeting.share is not None
     QTest.keyClick(window, Qt.Key.Key_Escape)
     assert retarget.retargeting.share is None
     QTest.keyClick(window, Qt.Key.Key_Return, CONTROL)
     qtbot.waitUntil(lambda: retarget.retargeting.result is not None, timeout=120_000)
-    np.testing.assert_array_equal(session.take.weights, session.original.weights)
+    np.testing.assert_array_equal(session.document.take.weights, session.document.original.weights)
     QTest.keyClick(window, Qt.Key.Key_Return, CONTROL | SHIFT)
-    qtbot.waitUntil(lambda: session.undo.count() == steps + 1, timeout=20_000)
-    assert session.undo.undoText() == "carry to broad"
-    assert (session.take.weights != session.original.weights).any() and session.character is not None
+    qtbot.waitUntil(lambda: session.document.undo.count() == steps + 1, timeout=20_000)
+    assert session.document.undo.undoText() == "carry to broad"
+    assert (
+        session.document.take.weights != session.document.original.weights
+    ).any() and session.document.character is not None
     retargeted(qtbot, window)
     assert face.overlay is None and window.preview.width() == alone
 
     QTest.keyClick(window, Qt.Key.Key_Z, CONTROL)
-    np.testing.assert_array_equal(session.take.weights, session.original.weights)
-    assert session.character is None
+    np.testing.assert_array_equal(session.document.take.weights, session.document.original.weights)
+    assert session.document.character is None
     QTest.keyClick(window, Qt.Key.Key_Z, CONTROL)
     assert retarget.retargeting.target.places["chin"] == before
 
@@ -120,7 +122,7 @@ def test_a_take_is_carried_to_another_head_and_back(
 def test_the_head_a_take_is_shown_on_is_the_target_until_another_is_chosen(
     qtbot: QtBot, window: MainWindow, broad_head: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    retarget, steps = window.retarget.retargeting, window.session.undo.count()
+    retarget, steps = window.retarget.retargeting, window.session.document.undo.count()
     chosen = [str(broad_head), "", str(broad_head), str(broad_head), str(tmp_path / "no.glb")]
     (tmp_path / "no.glb").write_bytes(b"no head")
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (chosen.pop(0), ""))
@@ -132,7 +134,7 @@ def test_the_head_a_take_is_shown_on_is_the_target_until_another_is_chosen(
     assert not window.status["notice"].text()
     QTest.keyClick(window, Qt.Key.Key_T)
     retargeted(qtbot, window)
-    assert retarget.ready and window.session.undo.count() == steps and not window.session.edited
+    assert retarget.ready and window.session.document.undo.count() == steps and not window.session.document.edited
     shown, overlay = window.preview._character, window.preview.face.overlay
     assert retarget.target.head is shown and retarget.target.path == broad_head and "chin" in retarget.target.places
     assert overlay is not None and overlay.sides[1].head is shown

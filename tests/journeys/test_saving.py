@@ -50,4 +50,4 @@ def test_answering_save_closes_when_it_is_saved_and_stays_open_when_it_cannot_be
     else:
         qtbot.waitUntil(lambda: "could not be written" in window.notices.text.text(), timeout=10_000)
         settled(qtbot, window)
-        assert window.isVisible() and window.session.edited and len(window.session.marks.notes) == 1
+        assert window.isVisible() and window.session.document.edited and len(window.session.document.marks.notes) == 1

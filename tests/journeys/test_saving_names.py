@@ -182,13 +182,13 @@ def test_a_project_that_another_retake_has_open_is_offered_as_a_copy(
     second.load(path)
     qtbot.waitUntil(lambda: bool(asked), timeout=20_000)
     assert "scene.retake is open in another Retake." in asked[0] and "copy" in asked[0]
-    assert second.session.path == take
+    assert second.session.document.path == take
 
     answering(monkeypatch, Answer.Open)
     with qtbot.waitSignal(second.files.opened, timeout=20_000):
         second.load(path)
     assert "copy of scene.retake" in second.notices.text.text() and second.keeper.path is None
-    assert [note.text for note in second.session.marks.notes] == ["one"]
+    assert [note.text for note in second.session.document.marks.notes] == ["one"]
     with qtbot.waitSignal(second.keeper.kept, timeout=20_000):
         noted(second, "two")
     with qtbot.waitSignal(window.keeper.kept, timeout=20_000):
@@ -214,7 +214,7 @@ def test_saving_over_what_another_retake_has_open_is_refused(
     choosing(monkeypatch, path)
     QTest.keyClick(window, *CONTROL_S)
     qtbot.waitUntil(lambda: "open in another Retake" in window.notices.text.text(), timeout=10_000)
-    assert window.session.edited
+    assert window.session.document.edited
     other.close()
 
 

@@ -50,7 +50,7 @@ def test_each_setting_applies_at_once_and_is_kept(
     window.actions_by_name["light_theme"].trigger()
     assert window.colours is theme.DARK
     pick(dialog.count, "Frames")
-    window.session.move_playhead(70)
+    window.session.view.move_playhead(70)
     assert window.timeline.in_frames and window.status["place"].text() == "frame 70"
     pick(dialog.preset, "Maya")
     assert window.actions_by_name["drag_tool"].shortcut().toString() == "W"
@@ -58,7 +58,7 @@ def test_each_setting_applies_at_once_and_is_kept(
     QTest.keyClicks(dialog.author, "Ana")
     QTest.keyClick(dialog.author, Qt.Key.Key_Return)
     noted(window, "softer")
-    assert window.session.marks.notes[0].author == "Ana"
+    assert window.session.document.marks.notes[0].author == "Ana"
     window.settings.remember(tmp_path / "a.csv")
     dialog.refresh()
     assert dialog.recent.text() == "1 file is remembered."
@@ -82,7 +82,7 @@ def test_the_loudspeaker_and_scrubbing_are_chosen_while_a_take_is_open(
     monkeypatch.setattr("app.playback.media.open_device", Named)
     assert dialog.playing.text() == "No sound is attached to this take."
     window.media.use_device("")
-    window.session.attach_audio(Audio(np.zeros(48_000, np.float32), 48_000))
+    window.session.document.attach_audio(Audio(np.zeros(48_000, np.float32), 48_000))
     pick(dialog.speaker, "Headset")
     assert opened[-1] == "Headset" and dialog.playing.text() == "Playing on Headset."
     assert window.status["sound"].text() == "♪ Headset"
@@ -90,7 +90,7 @@ def test_the_loudspeaker_and_scrubbing_are_chosen_while_a_take_is_open(
     assert isinstance(clock, AudioClock) and clock.scrubs
     QTest.mouseClick(dialog.scrubs, Qt.MouseButton.LeftButton, pos=QPoint(10, dialog.scrubs.height() // 2))
     assert not clock.scrubs and not window.settings.scrubs
-    window.session.move_playhead(30)
+    window.session.view.move_playhead(30)
     assert clock._sink._thread is None  # nothing was heard
 
 

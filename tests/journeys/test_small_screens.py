@@ -53,7 +53,9 @@ def test_a_frame_that_the_desktop_draws_late_hangs_over_no_edge(
 
 def test_what_is_pressed_first_is_seen_with_every_tool(qtbot: QtBot, window: MainWindow) -> None:
     window.resize(SMALL)
-    window.session.select((window.session.marks.spans[0].start, window.session.marks.spans[0].stop))
+    window.session.view.select(
+        (window.session.document.marks.spans[0].start, window.session.document.marks.spans[0].stop)
+    )
     below: list[str] = []
     for tool in TOOLS:
         window.actions_by_name[f"{tool}_tool"].trigger()

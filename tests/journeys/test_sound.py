@@ -26,7 +26,7 @@ def test_what_lies_beside_a_take_is_heard_and_seen(qtbot: QtBot, window: MainWin
     film(tmp_path / "slate.mp4", [round(1000 * n / 30) for n in range(300)])
     low = window.timeline.height()
     load(qtbot, window, take)
-    qtbot.waitUntil(lambda: window.session.audio is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: window.session.document.audio is not None, timeout=10_000)
     qtbot.waitUntil(lambda: window.timeline.height() > low, timeout=10_000)
     assert window.reference.isVisible() and isinstance(window.transport.clock, AudioClock)
 
@@ -35,15 +35,15 @@ def test_what_lies_beside_a_take_is_heard_and_seen(qtbot: QtBot, window: MainWin
     settled(qtbot, window)
     qtbot.waitUntil(lambda: not window.reference.shown.image.isNull() and window.reference.reading.idle, timeout=10_000)
     qtbot.wait(20)
-    assert abs(window.session.playhead - 60) <= 1
-    assert abs(window.reference.shown.image.pixelColor(5, 5).green() - shade(window.session.playhead)) <= 3
+    assert abs(window.session.view.playhead - 60) <= 1
+    assert abs(window.reference.shown.image.pixelColor(5, 5).green() - shade(window.session.view.playhead)) <= 3
 
     QTest.keyClick(window, Qt.Key.Key_Space)
-    qtbot.waitUntil(lambda: window.session.playhead > 75, timeout=10_000)
+    qtbot.waitUntil(lambda: window.session.view.playhead > 75, timeout=10_000)
     QTest.keyClick(window, Qt.Key.Key_M, Qt.KeyboardModifier.ControlModifier)
     assert window.transport.clock.muted and window.transport.playing
     QTest.keyClick(window, Qt.Key.Key_Space)
 
     load(qtbot, window, demo.BUNDLED)
-    assert window.session.audio is None and not window.reference.isVisible()
+    assert window.session.document.audio is None and not window.reference.isVisible()
     qtbot.waitUntil(lambda: window.timeline.height() == low, timeout=10_000)

@@ -17,7 +17,7 @@ LEFT, PLAIN, Key = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, Qt
 def done(request: pytest.FixtureRequest, window: MainWindow) -> list[str]:
     """The actions that were carried out since the window opened with a program's keys."""
     window.menus.use_preset(request.param)
-    window.session.move_playhead(120)
+    window.session.view.move_playhead(120)
     names: list[str] = []
     for name, action in window.actions_by_name.items():
         action.triggered.connect(lambda _=False, name=name: names.append(name))
@@ -35,7 +35,7 @@ def click_into(box: QAbstractSpinBox) -> None:
 
 
 def test_a_whole_number_is_stepped_and_typed(window: MainWindow, done: list[str]) -> None:
-    window.session.choose_tool("pin")
+    window.session.view.choose_tool("pin")
     box = window.pins.before
     click_into(box)
     before = box.value()
@@ -51,7 +51,7 @@ def test_a_whole_number_is_stepped_and_typed(window: MainWindow, done: list[str]
     QTest.keyClicks(box, "4")
     press(box, Key.Key_Right, Key.Key_Left, Key.Key_Return)
     assert box.value() == int("4" + str(before - 1)[1:])
-    assert done == [] and window.session.playhead == 120
+    assert done == [] and window.session.view.playhead == 120
 
 
 def test_a_number_with_decimals_is_typed(window: MainWindow, done: list[str]) -> None:
@@ -62,7 +62,7 @@ def test_a_number_with_decimals_is_typed(window: MainWindow, done: list[str]) ->
     assert box.text().startswith("7.5")
     press(box, Key.Key_Left, Key.Key_Backspace, Key.Key_End)
     assert box.text().startswith("75")
-    assert done == [] and window.session.playhead == 120
+    assert done == [] and window.session.view.playhead == 120
 
 
 def test_away_from_the_box_the_keys_are_the_window_s(window: MainWindow, done: list[str]) -> None:

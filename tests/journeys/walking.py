@@ -104,8 +104,8 @@ class Walk:
         session = self.window.session
         if self._pressed is None:
             assert not self.window.curves.tool.busy, self.done[-20:]
-        state = replay(session.contents())
-        np.testing.assert_array_equal(state.take.weights, session.take.weights)
+        state = replay(session.document.contents())
+        np.testing.assert_array_equal(state.take.weights, session.document.take.weights)
         assert not self.warnings, (self.warnings, self.done[-20:])
 
     def end(self) -> None:
@@ -115,14 +115,14 @@ class Walk:
         self.wait(lambda: self.window.inference.idle and self.window.files.opening.path is None)
         self.check()
         path = self.folder / "walked.retake"
-        self.steps = self.window.session.undo.count()
-        expected = fingerprint(self.window.session.contents())
+        self.steps = self.window.session.document.undo.count()
+        expected = fingerprint(self.window.session.document.contents())
         saved: list[object] = []
         self.window.keeper.saved.connect(saved.append)
         self.window.keeper.save_as(path)
         self.wait(lambda: bool(saved))
-        assert fingerprint(self.window.session.contents()) == expected
-        self.window.session.undo.setClean()
+        assert fingerprint(self.window.session.document.contents()) == expected
+        self.window.session.document.undo.setClean()
         self.window.close()
         self.wait(lambda: not self.window.isVisible())
         assert content_of(path) == expected
@@ -188,12 +188,12 @@ class Walk:
         at = QPoint(self.rng.randrange(max(1, widget.width())), self.rng.randrange(max(1, widget.height())))
         tool, inference, session = self.window.curves.tool, self.window.inference, self.window.session
         drawn = tool.busy and button == Qt.MouseButton.LeftButton and inference.busy
-        step, kind = session.undo.index(), type(tool).__name__
+        step, kind = session.document.undo.index(), type(tool).__name__
         QTest.mouseRelease(widget, button, Qt.KeyboardModifier.NoModifier, at)
         if drawn and kind in ("DragTool", "DrawTool") and widget is self.window.curves.viewport():
             refused: list[str] = []
             inference.failed.connect(lambda sentence, _: refused.append(sentence))
-            self._awaited = lambda: session.undo.index() == step + 1 or bool(refused)
+            self._awaited = lambda: session.document.undo.index() == step + 1 or bool(refused)
         return f"release {button.name}"
 
     def _pull(self) -> str:
@@ -203,7 +203,7 @@ class Walk:
         name = self.rng.choice(("drag", "draw"))
         self.window.actions_by_name[f"{name}_tool"].trigger()
         curves, area = self.window.curves, self.window.curves.viewport()
-        box = curves.lane(self.rng.choice(self.window.session.lanes)).scene_box()
+        box = curves.lane(self.rng.choice(self.window.session.view.lanes)).scene_box()
         points = [
             curves.mapFromScene(
                 box.left() + self.rng.random() * box.width(), box.top() + self.rng.uniform(-0.2, 1.2) * box.height()

@@ -55,16 +55,16 @@ def edit_until_killed(folder: Path, seed: int, tell: Connection, *, frames: int 
     keeper = Keeper(session, folder)
     keeper.kept.connect(lambda contents: tell.send(("kept", fingerprint(contents))))
     keeper.failed.connect(lambda *sentence: tell.send(("failed", " ".join(sentence))))
-    tell.send(("doing", fingerprint(session.contents())))
+    tell.send(("doing", fingerprint(session.document.contents())))
     while True:
-        now = session.contents()
+        now = session.document.contents()
         if saves and keeper.saving is None and rng.random() < 0.2:
             (folder / "saved").mkdir(exist_ok=True)
             keeper.save_as(folder / "saved" / f"{rng.integers(0, 2)}.retake")
-        if session.undo.count() and rng.random() < (0.3 if session.undo.index() < LATEST else 0.9):
-            position = int(rng.integers(0, session.undo.count() + 1))
+        if session.document.undo.count() and rng.random() < (0.3 if session.document.undo.index() < LATEST else 0.9):
+            position = int(rng.integers(0, session.document.undo.count() + 1))
             tell.send(("doing", fingerprint(replace(now, position=position))))
-            session.undo.setIndex(position)
+            session.document.undo.setIndex(position)
         else:
             push(session, rng, tell)
         wait(application, rng)
@@ -74,7 +74,7 @@ def push(session: Session, rng: np.random.Generator, tell: Connection) -> None:
     """Make one edit, telling first which state it leads to."""
     from app.session.commands import EditCommand
 
-    now = session.contents()
+    now = session.document.contents()
     start, length = int(rng.integers(0, FRAMES - 200)), int(rng.integers(1, 200))
     weights, asked = rng.random((length, len(SHAPES))), rng.random((length, len(ALL_CONTROLS)))
     lost = np.zeros(length, bool)
@@ -82,10 +82,10 @@ def push(session: Session, rng: np.random.Generator, tell: Connection) -> None:
         start=start, stop=start + length, weights=weights, asked=asked, reached=asked, granted=None, lost=lost
     )
     patch.settled = lambda _: patch
-    command = EditCommand(session, patch, f"edit {session.undo.count()}")
+    command = EditCommand.of(session.document, patch, f"edit {session.document.undo.count()}")
     edits = (*now.edits[: now.position], command.edit)
     tell.send(("doing", fingerprint(replace(now, edits=edits, position=len(edits)))))
-    session.undo.push(command)
+    session.document.undo.push(command)
 
 
 def wait(application: QCoreApplication, rng: np.random.Generator) -> None:
@@ -204,8 +204,8 @@ def edit_a_saved_project_until_killed(folder: Path, seed: int, tell: Connection)
         application.processEvents()
     keeper.kept.connect(lambda contents: tell.send(("kept", fingerprint(contents))))
     keeper.failed.connect(lambda *sentence: tell.send(("told", " ".join(sentence))))
-    tell.send(("doing", fingerprint(session.contents())))
-    tell.send(("kept", fingerprint(session.contents())))
+    tell.send(("doing", fingerprint(session.document.contents())))
+    tell.send(("kept", fingerprint(session.document.contents())))
     tell.send(("saved", ""))
     while True:
         push(session, rng, tell)

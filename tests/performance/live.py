@@ -231,7 +231,7 @@ def run(seconds: float, *, record: bool, flooded: bool) -> tuple[Log, Array, dic
         drops = window.live._listener.status().drops
         if record:
             window.live.toggle_recording()
-            missing = check_recording(window.session.take, performance(seconds), sent[:, 0])
+            missing = check_recording(window.session.document.take, performance(seconds), sent[:, 0])
             print(f"recorded: equal to what was sent at every frame; {missing} of {len(sent)} sent frames not in it")
         for timer in kept:
             timer.stop()
@@ -252,7 +252,7 @@ def opened(folder: Path, loop):  # type: ignore[no-untyped-def]
     window.inference.ready.connect(loop.quit)
     loop.exec()
     yield window
-    window.session.undo.setClean()
+    window.session.document.undo.setClean()
     window.close()
 
 

@@ -115,7 +115,7 @@ def replace_by(path: Path, new: Path) -> bytes:
 def next_start(folder: Path, content_of: Callable[[Path], str]) -> list[str]:
     """Start again: tidy up, and open each project; returns what they hold. Nothing else may be left."""
     from app.session.left_over import tidy
-    from engine.formats.atomic import sweep
+    from engine.formats.base.atomic import sweep
 
     tidy(folder)
     for place in [folder, *(path for path in folder.rglob("*") if path.is_dir())]:

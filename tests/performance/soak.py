@@ -35,21 +35,21 @@ def main() -> int:
     session = window.session
     before_mb, before_none = 0.0, 0
     for index in range(redraws):
-        session.set_view(index % 50, index % 50 + 200)
-        session.move_playhead(index % len(session.take))
+        session.view.set_range(index % 50, index % 50 + 200)
+        session.view.move_playhead(index % len(session.document.take))
         window.curves.viewport().repaint()
         application.processEvents()
         if index == redraws // 10:
             before_mb, before_none = resident_mb(), sys.getrefcount(None)
     for index in range(edits):
-        asked = session.controls[100:130].copy()
+        asked = session.document.controls[100:130].copy()
         asked[:, 0] += 0.5 + index % 5
-        steps = session.undo.index()
+        steps = session.document.undo.index()
         window.inference.ask(100, asked)
         window.inference.finish("edit")
-        while session.undo.index() == steps:
+        while session.document.undo.index() == steps:
             application.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
-        session.undo.undo()
+        session.document.undo.undo()
     gc.collect()
     grown, fallen = resident_mb() - before_mb, before_none - sys.getrefcount(None)
     window.close()

@@ -33,11 +33,11 @@ def script(window: MainWindow, path: Path) -> Iterator[Callable[[], bool]]:
 
     yield lambda: still() and not window.status["engine"].text()
     window.preview.show_view("Split")
-    session.set_view(20, 236)
-    session.move_playhead(FRAME)
+    session.view.set_range(20, 236)
+    session.view.move_playhead(FRAME)
     yield still
     lane = window.curves.lane(LANE)
-    start = window.curves.mapFromScene(lane.x_of(FRAME), lane.y_of(float(session.controls[FRAME, LANE])))
+    start = window.curves.mapFromScene(lane.x_of(FRAME), lane.y_of(float(session.document.controls[FRAME, LANE])))
     pixels = lane.y_of(BY_MM) - lane.y_of(0.0)
     QTest.mouseMove(area, start)
     QTest.mousePress(area, left, plain, start)

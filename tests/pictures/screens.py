@@ -28,16 +28,16 @@ EYE = next(index for index, control in enumerate(CONTROLS) if control.area == "e
 def states(window: MainWindow) -> Iterator[str]:
     """Bring the window from one state to the next; yields their names."""
     session = window.session
-    session.move_playhead(FRAME)
+    session.view.move_playhead(FRAME)
     for name in TOOLS:
         window.actions_by_name[f"{name}_tool"].trigger()
         yield name
     window.edits.drag_tool()
-    session.choose_lane(EYE)
-    session.expand(EYE)
+    session.view.choose_lane(EYE)
+    session.view.expand(EYE)
     yield "expanded"
-    session.expand(EYE)
-    session.move_playhead(CLOSED_FRAME)
+    session.view.expand(EYE)
+    session.view.move_playhead(CLOSED_FRAME)
     window.edits.close_here()
     yield "closed"
     for name in ("Eyes", "Mouth"):
@@ -79,7 +79,7 @@ def main() -> None:
                 settle(window)
                 path = folder / f"{size.width()}x{size.height()}_{theme}_{name}.png"
                 screen.grabWindow(0).save(str(path))
-            window.session.undo.setClean()
+            window.session.document.undo.setClean()
             window.close()
             settle(window)
 

@@ -23,19 +23,19 @@ __all__ = ["no_dialog", "window"]  # fixtures
 
 
 def first_minute(opened: MainWindow) -> None:
-    opened.session.move_playhead(175)
+    opened.session.view.move_playhead(175)
 
 
 def weights_shown(opened: MainWindow) -> None:
-    opened.session.expand(0)
+    opened.session.view.expand(0)
     opened.edits.scale_tool()
-    opened.session.select((60, 100))
+    opened.session.view.select((60, 100))
 
 
 def pinning_in_light(opened: MainWindow) -> None:
     opened.actions_by_name["light_theme"].trigger()
     opened.edits.pin_tool()
-    opened.session.move_playhead(175)
+    opened.session.view.move_playhead(175)
 
 
 def told_off(opened: MainWindow) -> None:
@@ -44,20 +44,22 @@ def told_off(opened: MainWindow) -> None:
 
 def sound_missing(opened: MainWindow) -> None:
     record = Media("audio", "sound/slate.wav", "0" * 64, -0.25)
-    opened.session.set_marks(opened.session.marks.with_medium("audio", record))
+    opened.session.document.set_marks(opened.session.document.marks.with_medium("audio", record))
 
 
 def lanes_shown(opened: MainWindow) -> None:
     said = ("sil", "P", "AA1", "F", "AO1", "M", "EH1", "N", "S", "sil", "W", "IY1", "B", "AH0", "K", "sil")
     cues = [Cue(1.0 + 0.22 * index, 1.22 + 0.22 * index, label) for index, label in enumerate(said)]
-    opened.session.undo.push(VisemesCommand(opened.session, attached(cues, "demo.TextGrid"), "attach demo.TextGrid"))
-    opened.session.set_view(25, 115)
-    opened.session.move_playhead(88)
+    opened.session.document.undo.push(
+        VisemesCommand.of(opened.session.document, attached(cues, "demo.TextGrid"), "attach demo.TextGrid")
+    )
+    opened.session.view.set_range(25, 115)
+    opened.session.view.move_playhead(88)
 
 
 def retargeting(opened: MainWindow) -> None:
     opened.retarget.retarget_tool()
-    opened.session.move_playhead(175)
+    opened.session.view.move_playhead(175)
 
 
 STATES: tuple[Callable[[MainWindow], None], ...] = (

@@ -8,11 +8,11 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 
 from app.session.curve_table import CURVES
-from engine.take import Array
+from engine.editing import WeightRequest
+from engine.take import SHAPES, Array
 
 if TYPE_CHECKING:
     from app.curves.panel import CurvesPanel
-    from engine.editing import Dragger, Patch
 
 FINE = 0.25  # with Shift, the pointer counts this much
 
@@ -63,15 +63,9 @@ class Tool:
         session = self.panel.session
         column = CURVES[lane].column
         if CURVES[lane].is_weight:
-
-            def replace(dragger: Dragger) -> Patch:
-                from engine.retouch import replace_weight
-
-                return replace_weight(dragger.take, column, start, curve)
-
-            self.panel.inference.run(replace)
+            self.panel.inference.run(WeightRequest(SHAPES[column], start, curve))
             return
-        asked = session.controls[start : start + len(curve)].copy()
+        asked = session.document.controls[start : start + len(curve)].copy()
         asked[:, column] = curve.clip(min=CURVES[lane].lowest)
         self.panel.inference.ask(start, asked)
 

@@ -25,10 +25,14 @@ class DragTool(Stroke):
         """Take hold of the curve at the frame under the pointer."""
         session = self.panel.session
         frame = round(self.panel.frame_at(event.position()))
-        if not 0 <= frame < len(session.take) or self.panel.inference.busy or session.draft is not None:
+        if (
+            not 0 <= frame < len(session.document.take)
+            or self.panel.inference.busy
+            or session.document.draft is not None
+        ):
             return
         self._lane, self._centre, self._from, self._by = lane, frame, event.position(), 0.0
-        session.move_playhead(frame)
+        session.view.move_playhead(frame)
         self._hint(lane, frame, event.position())
 
     def move(self, lane: int | None, event: QMouseEvent) -> None:
@@ -46,22 +50,22 @@ class DragTool(Stroke):
     def wheel(self, notches: float) -> None:
         """Widen or narrow the brush."""
         session = self.panel.session
-        session.set_brush(radius_s=session.radius_s * WHEEL_STEP**notches)
+        session.view.set_brush(radius_s=session.view.radius_s * WHEEL_STEP**notches)
         if self._lane is not None:
             self._pull()
 
     def refresh(self) -> None:
         """Let handle and read-out follow the face, which answers a moment after the pointer."""
-        if self._lane is not None and self.panel.session.draft is not None:
+        if self._lane is not None and self.panel.session.document.draft is not None:
             self._hint(self._lane, self._centre, self._from)
 
     def _pull(self) -> None:
         if self._lane is None or not self._by:
             return
         session = self.panel.session
-        start, stop = reach(self._centre, session.radius_frames, len(session.take))
-        curve = session.curve(self._lane)[start:stop]
-        kind, radius, strength = CURVES[self._lane], session.radius_frames, session.strength
+        start, stop = reach(self._centre, session.view.radius_frames, len(session.document.take))
+        curve = session.document.curve(self._lane)[start:stop]
+        kind, radius, strength = CURVES[self._lane], session.view.radius_frames, session.view.strength
         limits = {"floor": kind.lowest, "ceiling": kind.highest}
         self.ask(
             self._lane,
@@ -71,10 +75,10 @@ class DragTool(Stroke):
 
     def _hint(self, lane: int, frame: int, at: QPointF) -> None:
         session, shown, curve = self.panel.session, self.panel.lane(lane), CURVES[lane]
-        asked = float(session.curve(lane)[frame]) + session.strength * self._by
+        asked = float(session.document.curve(lane)[frame]) + session.view.strength * self._by
         asked = min(max(asked, curve.lowest), curve.highest)
-        reached = session.value(lane, frame)
-        self.panel.show_brush(shown, reach(frame, session.radius_frames, len(session.take)))
+        reached = session.document.value(lane, frame)
+        self.panel.show_brush(shown, reach(frame, session.view.radius_frames, len(session.document.take)))
         self.panel.show_dot(shown, frame, reached)
         if self._by:
             self.panel.show_readout(f"asked {curve.shown(asked)}   reached {curve.shown(reached)}", at)
@@ -82,10 +86,10 @@ class DragTool(Stroke):
     def _hover(self, lane: int | None, at: QPointF) -> None:
         session = self.panel.session
         frame = round(self.panel.frame_at(at))
-        if lane is None or not 0 <= frame < len(session.take):
+        if lane is None or not 0 <= frame < len(session.document.take):
             self.leave()
             return
-        shown, curve, value = self.panel.lane(lane), CURVES[lane], session.value(lane, frame)
+        shown, curve, value = self.panel.lane(lane), CURVES[lane], session.document.value(lane, frame)
         self.panel.show_dot(shown, frame, value)
-        self.panel.show_brush(shown, reach(frame, session.radius_frames, len(session.take)))
+        self.panel.show_brush(shown, reach(frame, session.view.radius_frames, len(session.document.take)))
         self.panel.show_readout(f"{curve.title} {curve.shown(value)} · frame {frame} · drag to change", at)

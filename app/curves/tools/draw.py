@@ -49,21 +49,21 @@ class DrawTool(Stroke):
         line = np.interp(np.arange(low, high + 1), *_ascending((last_frame, frame), (last_value, value)))
         self._sketch.update(zip(range(low, high + 1), map(float, line), strict=True))
         self._last = (frame, value)
-        self.panel.session.move_playhead(frame)
+        self.panel.session.view.move_playhead(frame)
         self.ask(self._lane, *self._asked(self._lane))
         self.panel.show_readout(f"{CURVES[self._lane].shown(value)} · frame {frame}", at)
 
     def _point(self, lane: int, at: QPointF) -> tuple[int, float]:
-        frame = int(np.clip(round(self.panel.frame_at(at)), 0, len(self.panel.session.take) - 1))
+        frame = int(np.clip(round(self.panel.frame_at(at)), 0, len(self.panel.session.document.take) - 1))
         return frame, max(CURVES[lane].lowest, self.panel.lane(lane).value_at(self.panel.mapToScene(at.toPoint()).y()))
 
     def _asked(self, lane: int) -> tuple[int, Array]:
         """Return the sketch, with a few frames at either side that lead into it."""
         frames = sorted(self._sketch)
         session, values = self.panel.session, np.array([self._sketch[frame] for frame in frames])
-        ease = JOIN_S * session.take.fps
+        ease = JOIN_S * session.document.take.fps
         span = frames[0], frames[-1] + 1
-        return eased_to(session.curve(lane), span, values, before_frames=ease, after_frames=ease)
+        return eased_to(session.document.curve(lane), span, values, before_frames=ease, after_frames=ease)
 
 
 def _ascending(frames: tuple[int, int], values: tuple[float, float]) -> tuple[tuple[int, int], tuple[float, float]]:

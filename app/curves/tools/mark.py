@@ -35,7 +35,7 @@ class MarkTool(Tool):
             self.panel.show_readout("drag over frames to mark them" if lane is not None else "", at)
             return
         first, last = sorted((self._from, frame))
-        self.panel.session.select((first, last + 1))
+        self.panel.session.view.select((first, last + 1))
         self.panel.show_readout(counted(last + 1 - first, "frame"), at)
 
     def release(self, event: QMouseEvent) -> None:
@@ -45,18 +45,20 @@ class MarkTool(Tool):
         session, start = self.panel.session, self._from
         self._from = None
         self.panel.show_readout("", event.position())
-        if round(self.panel.frame_at(event.position())) == start or session.selection is None:
-            session.move_playhead(start)
+        if round(self.panel.frame_at(event.position())) == start or session.view.selection is None:
+            session.view.move_playhead(start)
             return
-        span = Span(*session.selection)
-        if span not in session.marks.spans:
-            spans = tuple(sorted((*session.marks.spans, span), key=lambda each: each.start))
-            session.undo.push(MarkCommand(session, replace(session.marks, spans=spans), "mark a span"))
+        span = Span(*session.view.selection)
+        if span not in session.document.marks.spans:
+            spans = tuple(sorted((*session.document.marks.spans, span), key=lambda each: each.start))
+            session.document.undo.push(
+                MarkCommand.of(session.document, replace(session.document.marks, spans=spans), "mark a span")
+            )
 
     def cancel(self) -> None:
         """Mark nothing."""
         self._from = None
-        self.panel.session.select(None)
+        self.panel.session.view.select(None)
 
 
 class ScrubTool(Tool):
@@ -73,12 +75,12 @@ class ScrubTool(Tool):
     def press(self, lane: int, event: QMouseEvent) -> None:
         """Go to the frame under the pointer."""
         self._held = True
-        self.panel.session.move_playhead(round(self.panel.frame_at(event.position())))
+        self.panel.session.view.move_playhead(round(self.panel.frame_at(event.position())))
 
     def move(self, lane: int | None, event: QMouseEvent) -> None:
         """Follow the pointer."""
         if self._held:
-            self.panel.session.move_playhead(round(self.panel.frame_at(event.position())))
+            self.panel.session.view.move_playhead(round(self.panel.frame_at(event.position())))
 
     def release(self, event: QMouseEvent) -> None:
         """Let go."""

@@ -60,14 +60,14 @@ class ScaleTool(Tool):
         self._held = self._handle_at(event.position()) or "box"
         if self._held == "box":
             self._lane = lane
-            self.panel.session.select(None)
+            self.panel.session.view.select(None)
 
     def move(self, lane: int | None, event: QMouseEvent) -> None:
         """Widen the box, or scale by the handle."""
         session, at = self.panel.session, event.position()
         if self._held == "box":
             frames = sorted((round(self.panel.frame_at(self._pressed)), round(self.panel.frame_at(at)) + 1))
-            session.select((frames[0], frames[1]))
+            session.view.select((frames[0], frames[1]))
         elif self._held:
             self._scale(at)
         else:
@@ -86,7 +86,7 @@ class ScaleTool(Tool):
         if self._held in ("value", "time"):
             self.panel.inference.cancel()
         elif not self._held:
-            self.panel.session.select(None)
+            self.panel.session.view.select(None)
         self._held = ""
         self.leave()
 
@@ -104,15 +104,15 @@ class ScaleTool(Tool):
         shapes = {"value": Qt.CursorShape.SizeVerCursor, "time": Qt.CursorShape.SizeHorCursor}
         self.panel.setCursor(shapes.get(handle, self.cursor))
         text = {"value": "pull to scale the amplitude", "time": "pull to scale the time"}.get(handle, "")
-        chosen = self.panel.session.selection is not None
+        chosen = self.panel.session.view.selection is not None
         self.panel.show_readout(text or ("" if chosen or lane is None else "drag a box over a stretch of a curve"), at)
 
     def _scale(self, at: QPointF) -> None:
         session = self.panel.session
-        if session.selection is None:
+        if session.view.selection is None:
             return
-        start, stop = session.selection
-        curve = session.curve(self._lane)
+        start, stop = session.view.selection
+        curve = session.document.curve(self._lane)
         if self._held == "value":
             box = self.panel.lane(self._lane).scene_box()
             factor = max(0.0, 1.0 + 2.0 * (self._pressed.y() - at.y()) / max(1.0, box.height()))
@@ -120,17 +120,17 @@ class ScaleTool(Tool):
             self.panel.show_readout(f"{CURVES[self._lane].title} × {factor:.2f}", at)
         else:
             new_stop = int(np.clip(round(self.panel.frame_at(at)) + 1, start + 2, len(curve)))
-            join = JOIN_S * session.take.fps
+            join = JOIN_S * session.document.take.fps
             self.ask(self._lane, *scaled_in_time(curve, start, stop, new_stop, join_frames=join))
             self.panel.show_readout(f"{stop - start} → {counted(new_stop - start, 'frame')}", at)
 
     def _box(self) -> QRectF:
         session = self.panel.session
-        if session.selection is None or self._lane not in session.lanes:
+        if session.view.selection is None or self._lane not in session.view.lanes:
             return QRectF()
         shown = self.panel.lane(self._lane)
         box = shown.scene_box()
-        left, right = shown.x_of(session.selection[0] - 0.5), shown.x_of(session.selection[1] - 0.5)
+        left, right = shown.x_of(session.view.selection[0] - 0.5), shown.x_of(session.view.selection[1] - 0.5)
         return QRectF(left, box.top() + 4, right - left, box.height() - 8)
 
     def _handles(self) -> dict[str, QPointF]:

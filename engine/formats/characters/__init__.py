@@ -1,4 +1,4 @@
-"""Characters from other programs: glTF and VRM with morph targets, a folder of OBJ files, ICT-FaceKit; and our own file."""
+"""Characters from other programs: glTF and VRM with morph targets, folders of OBJ files, PLY, STL, ICT-FaceKit; our own."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import os
 from pathlib import Path
 
 from engine.errors import FormatError
+from engine.formats.base.content import require_file
 from engine.formats.characters.raw import RawCharacter
-from engine.formats.content import require_file
 
-KNOWN = "Retake imports glTF, GLB and VRM, folders of OBJ files, and ICT-FaceKit."
+KNOWN = "Retake imports glTF, GLB and VRM, folders of OBJ files, PLY, STL and ICT-FaceKit."
 
 
 def read(path: Path) -> RawCharacter:
@@ -20,7 +20,7 @@ def read(path: Path) -> RawCharacter:
 
 
 def _read(path: Path) -> RawCharacter:
-    from engine.formats.characters import gltf, ict, obj
+    from engine.formats.characters import gltf, ict, obj, scans
 
     if os.path.isdir(path):  # which raises for no name, as pathlib does
         return obj.read(path)
@@ -32,6 +32,8 @@ def _read(path: Path) -> RawCharacter:
         return gltf.read(path)
     if ending == ".obj":
         return obj.read_mesh(path)
+    if ending in scans.ENDINGS:
+        return scans.read(path)
     if ending == ".npz" and ict.is_ict(path):
         return ict.read(path)
     raise FormatError(f"{path.name} is not a kind of file that a character can be in.", KNOWN)

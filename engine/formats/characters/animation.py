@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
-from engine.formats.atomic import write_bytes
+from engine.formats.base.atomic import write_bytes
 from engine.formats.characters import usd
 from engine.formats.characters.moving import MovingMesh
 

@@ -10,14 +10,14 @@ import numpy.typing as npt
 
 from engine.character import Character, bundled
 from engine.errors import EditError, FormatError
-from engine.formats.budget import BUDGET
+from engine.formats.base.budget import BUDGET
 from engine.formats.characters.colouring import MOST_PARTS, colours_of
 from engine.formats.characters.frame import TYPICAL_MM, UNITS_MM, Detection, Frame, detect
 from engine.formats.characters.landmarks import transfer_landmarks
 from engine.formats.characters.names import Match, match_names
 from engine.formats.characters.raw import RawCharacter
 from engine.framing import LEAST_SHARE, share_seen
-from engine.manifold.drive import parts_of
+from engine.mesh import parts_of
 from engine.take import SHAPE_INDEX, SHAPES, Array
 from engine.words import counted
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from engine.manifold.drive import parts_of
+from engine.mesh import parts_of
 from engine.take import Array
 
 Rows = npt.NDArray[np.int64]

@@ -41,7 +41,7 @@ def _could_be_eyes(one: Ball, other: Ball) -> bool:
 
 def _compact(vertices: Array, triangles: npt.NDArray[np.int32]) -> list[npt.NDArray[np.int64]]:
     """Return the rows of those parts, largest first, whose box is about a cube."""
-    from engine.manifold.drive import parts_of  # it brings scipy, which nothing that only names a head needs
+    from engine.mesh import parts_of  # it brings scipy, which nothing that only names a head needs
 
     parts = parts_of(triangles, len(vertices))
     order = np.argsort(parts, kind="stable")

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
-from engine.formats.budget import BUDGET, Budget
+from engine.formats.base.budget import BUDGET, Budget
 from engine.formats.characters.accessors import Accessors, Structure
 from engine.formats.characters.gltf_document import EXPORT, document_of
 from engine.formats.characters.gltf_names import target_names

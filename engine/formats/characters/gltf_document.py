@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from engine.errors import FormatError
-from engine.formats.budget import BUDGET
+from engine.formats.base.budget import BUDGET
+from engine.formats.base.content import content_of
 from engine.formats.characters.accessors import Structure
-from engine.formats.content import content_of
 
 MAX_BYTES = 1 << 30
 MAX_JSON_BYTES = 64 << 20

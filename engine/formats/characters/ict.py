@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
-from engine.formats.archive import arrays_of, names_in
+from engine.formats.base.archive import arrays_of, names_in
 from engine.formats.characters.raw import MAX_SHAPES, MAX_VERTICES, RawCharacter, check
 
 KEYS = ("neutral", "faces", "shape_names", "deltas")

@@ -12,8 +12,8 @@ from scipy.spatial.distance import cdist
 
 from engine.character import Character, bundled
 from engine.errors import EditError
-from engine.manifold.drive import parts_of
 from engine.manifold.pose import fit_similarity
+from engine.mesh import parts_of
 from engine.take import SHAPES, Array
 
 MOVED_MM = 1.0

@@ -1,4 +1,9 @@
-"""A folder of OBJ files: the neutral face and one file for each shape, all with the same vertices in the same order."""
+"""A folder of OBJ files: the neutral face and one file for each shape, all with the same vertices in the same order.
+
+Read by code of our own: the shapes of a head stand and fall with the numbers of its vertices. trimesh makes 257,701
+vertices of ICT-FaceKit's 26,719, one for each material, and twice the time (1.1 s for 0.7); with materials off it finds
+1,080 of its 52,220 triangles, after 7 s; it knows no tabs, and no line that is at fault.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.errors import FormatError
-from engine.formats.budget import BUDGET
+from engine.formats.base.budget import BUDGET
+from engine.formats.base.content import content_of, unread
 from engine.formats.characters.names import match_names, plain
 from engine.formats.characters.raw import FARTHEST, MAX_SHAPES, MAX_VERTICES, RawCharacter, check
-from engine.formats.content import content_of, unread
 from engine.take import Array
 from engine.words import counted
 

@@ -10,8 +10,8 @@ from scipy.spatial.distance import cdist
 
 from engine.character import Character
 from engine.errors import EditError
-from engine.manifold.drive import parts_of
 from engine.manifold.pose import fit_similarity
+from engine.mesh import parts_of
 from engine.spacetime.align import check_points
 from engine.take import Array
 from engine.words import counted

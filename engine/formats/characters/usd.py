@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from engine.errors import EngineError
-from engine.formats.atomic import write_bytes
+from engine.formats.base.atomic import write_bytes
 from engine.formats.characters.moving import MovingMesh
 
 ENDINGS = (".usd", ".usdc", ".usda")

@@ -164,23 +164,3 @@ def measured_closures(made: Sequence[Array], pieces: Sequence[Piece]) -> dict[st
 def _mean(rates: Array) -> float | None:
     known = [float(rate) for rate in rates if not math.isnan(rate)]
     return sum(known) / len(known) if known else None
-
-
-def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
-    """Draw lip and lid curves, closure rates, and requests with and without the autoencoder (figures 6, 8, 9)."""
-    from engine.lab.evaluate import regress_figures
-
-    return regress_figures.draw(data, folder, report)
-
-
-__all__ = [
-    "EYES_MM",
-    "MOUTH_MM",
-    "Known",
-    "known_of",
-    "measured_closures",
-    "methods",
-    "pieces_to_measure",
-    "played",
-    "table",
-]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from engine.lab.evaluate import Report, Row
 from engine.lab.evaluate.study import stored
+from engine.lab.reporting import Report, Row
 
 
 def table(data: Path | None, report: Report) -> list[Row]:

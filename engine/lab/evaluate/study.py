@@ -18,7 +18,7 @@ import numpy as np
 import torch
 
 from engine.errors import AssetError
-from engine.formats.atomic import write_bytes
+from engine.formats.base.atomic import write_bytes
 from engine.lab.corpus import Piece, load_takes, pieces_of, split, whole_faces
 from engine.lab.evaluate.baselines import ridge
 from engine.lab.evaluate.baselines.nearest import Nearest

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from engine.easing import ease
 from engine.take import Array
 
 
 def smooth_step(start: float, end: float, x: npt.ArrayLike) -> Array:
     """Return 0 before `start`, 1 after `end`, and a cubic between; `end` may lie below `start`."""
     t = np.clip((np.asarray(x, np.float64) - start) / (end - start), 0.0, 1.0)
-    return np.asarray(t * t * (3 - 2 * t))
+    return ease(t)
 
 
 def mix(start: npt.ArrayLike, end: npt.ArrayLike, share: npt.ArrayLike) -> Array:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from engine.easing import ease
 from engine.errors import EngineError
 from engine.lab.performer.visemes import VISEME_OF, pose_weights
 from engine.take import MODEL_FPS, SHAPE_INDEX, SHAPES, Array, Take
@@ -48,7 +49,7 @@ def perform(script: Script, *, fps: float = MODEL_FPS, name: str = "performance"
     weights = _speech(time, starts, stops, symbols)
     weights += _accents(time, starts, stops, script.phones)
     for start, stop in script.smiles:
-        swell = _smooth_step((time - start) / 0.35) * _smooth_step((stop - time) / 0.5)
+        swell = ease((time - start) / 0.35) * ease((stop - time) / 0.5)
         weights += swell[:, None] * pose_weights(SMILE) * (1 - 0.5 * weights)
     weights += _gaze(time, rng)
     weights = _blink(weights, time, script.blinks_per_min, rng)
@@ -91,7 +92,7 @@ def _keep_closures(weights: Array, time: Array, starts: Array, stops: Array, sym
     for start, stop, symbol in zip(starts, stops, symbols, strict=True):
         if symbol in ("P", "B", "M"):
             centre, half = (start + stop) / 2, (stop - start) / 2
-            shut = np.maximum(shut, _smooth_step(1 - (np.abs(time - centre) - half) / 0.07))
+            shut = np.maximum(shut, ease(1 - (np.abs(time - centre) - half) / 0.07))
     closed = weights.copy()
     closed[:, parting] *= (1 - shut)[:, None]
     closed[:, close] = np.maximum(weights[:, close], shut * weights[:, jaw])
@@ -128,7 +129,7 @@ def _blink(weights: Array, time: Array, per_min: float, rng: np.random.Generator
     while start < time[-1] - 0.3:
         down = np.clip((time - start) / BLINK_CLOSE_S, 0, 1)
         up = np.clip((time - start - BLINK_CLOSE_S - 0.04) / BLINK_OPEN_S, 0, 1)
-        closed = np.maximum(closed, _smooth_step(down) * (1 - _smooth_step(up)))
+        closed = np.maximum(closed, ease(down) * (1 - ease(up)))
         start += 0.5 + rng.exponential(60.0 / per_min)
     blinked = weights.copy()
     for side in ("Left", "Right"):
@@ -153,11 +154,6 @@ def _without(weights: Array, lost: np.ndarray) -> Array:
         return weights
     frames = np.arange(len(weights))
     return np.stack([np.interp(frames, frames[~lost], curve[~lost]) for curve in weights.T], axis=1)
-
-
-def _smooth_step(position: Array) -> Array:
-    clipped = np.clip(position, 0.0, 1.0)
-    return np.asarray(clipped * clipped * (3 - 2 * clipped))
 
 
 def phones(script: Script) -> list[tuple[float, float, str]]:

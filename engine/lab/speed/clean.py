@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from engine.clean.infer import bundled
-from engine.lab.speed import Speed, percentile_ms
+from engine.lab.speed.timing import Speed, percentile_ms
 from engine.live.decode import decode
 from engine.live.livelink import Stamp, encode
 from engine.live.stream import Stream

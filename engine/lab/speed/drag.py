@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine import editing
-from engine.lab.speed import Speed, percentile_ms, performance_of
+from engine.lab.speed.timing import Speed, percentile_ms, performance_of
 from engine.take import Take
 
 ROUNDS = 200

@@ -7,7 +7,7 @@ import numpy as np
 from engine.controls import CONTROL_INDEX, FEW, bundled_measurer
 from engine.inpaint.fill import fill
 from engine.lab.performer.corpus import synthetic_performances
-from engine.lab.speed import Speed, percentile_ms
+from engine.lab.speed.timing import Speed, percentile_ms
 from engine.take import MODEL_FPS, Take
 
 FRAMES, GOAL_MS = 200, 40.0

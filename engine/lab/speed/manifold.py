@@ -7,7 +7,7 @@ import time
 import numpy as np
 import numpy.typing as npt
 
-from engine.lab.speed import Speed, percentile_ms
+from engine.lab.speed.timing import Speed, percentile_ms
 from engine.manifold.drive import MeshDriver
 from engine.take import Array
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.controls import bundled_measurer
 from engine.lab.performer.degrade import Faults, degrade
-from engine.lab.speed import Speed, percentile_ms, performance_of
+from engine.lab.speed.timing import Speed, percentile_ms, performance_of
 from engine.quality import Seen, Sound, flags_after, flags_of
 
 FPS, DURATION_S = 60.0, 3600.0

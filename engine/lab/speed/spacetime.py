@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from engine.lab.speed import Speed, percentile_ms
+from engine.lab.speed.timing import Speed, percentile_ms
 from engine.spacetime.pin import PinSolver
 from engine.spacetime.prior import from_shapes
 from engine.spacetime.solve import MovementMatcher

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from engine.character import bundled
 from engine.formats import read_take, write_take
-from engine.lab.speed import Speed, percentile_ms, performance_of
+from engine.lab.speed.timing import Speed, percentile_ms, performance_of
 
 
 def measure() -> list[Speed]:

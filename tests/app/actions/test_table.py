@@ -6,6 +6,7 @@ import pytest
 
 from app.actions.edit import EditActions
 from app.actions.file import FileActions
+from app.actions.flags import FlagActions
 from app.actions.marks import MarkActions
 from app.actions.media import MediaActions
 from app.actions.settings import SettingsActions
@@ -21,6 +22,7 @@ from app.window.main_window import MainWindow
 OWNERS = (
     MainWindow,
     FileActions,
+    FlagActions,
     MediaActions,
     EditActions,
     TimeActions,

@@ -25,7 +25,7 @@ def test_every_command_that_writes_is_in_the_table_and_no_other() -> None:
         (command.__name__, name)
         for command in commands(cli.build())
         for name in inspect.signature(command).parameters
-        if name in ("out", "record", "key") and command.__name__ != "score"
+        if name in ("out", "record", "key", "findings", "for_editors") and command.__name__ != "score"
     }
     assert found == set(OUTPUTS)
 
@@ -52,7 +52,7 @@ def test_what_cannot_be_written_is_refused_before_anything_is_read(
         raise AssertionError("it was begun")
 
     monkeypatch.setattr("engine.formats.livelink.read", work)
-    monkeypatch.setattr("engine.formats.content.require_file", work)
+    monkeypatch.setattr("engine.formats.base.content.require_file", work)
     assert cli.run([*line, "-o", str(tmp_path / name)]) == 2
     assert capsys.readouterr().err.count("\n") == 1 and not list(tmp_path.iterdir())
 

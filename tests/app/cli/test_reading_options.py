@@ -12,8 +12,8 @@ from typer.main import get_command
 
 from app import cli
 from engine.formats import read_take, write_take
-from engine.formats.livelink_sides import exchange
-from engine.formats.reading import Reading
+from engine.formats.base.reading import Reading
+from engine.formats.livelink.sides import exchange
 from engine.take import SHAPE_INDEX, SHAPES, Take
 
 READING = (

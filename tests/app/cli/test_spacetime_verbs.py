@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 
 from app import cli
-from app.cli import labelled
 from engine.character import BUNDLED, bundled, save
+from engine.editing import Performance
 from engine.formats import labels, read_take, write_take
-from engine.formats.capture import Markers
 from engine.formats.markers import write
+from engine.formats.markers.capture import Markers
 from engine.lab.performer import demo
 from engine.manifold.retarget import retarget_weights
 from engine.spacetime.layout import standard
-from engine.spacetime.source import from_take
 from engine.take import SHAPE_INDEX, SHAPES, Take
 from tests.heads import capture
 
@@ -85,8 +84,7 @@ def test_a_take_at_rest_is_a_take_and_no_capture(tmp_path: Path) -> None:
     np.testing.assert_allclose(
         read_take(out).weights, retarget_weights(still, {15: {"jawOpen": 0.5}}).weights, atol=1e-9
     )
-    source = from_take(still, bundled())
-    assert not source.is_capture and labelled._features(source) is source.take.weights
+    assert Performance(still, bundled()).features is still.weights
 
 
 @pytest.mark.parametrize(

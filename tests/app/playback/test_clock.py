@@ -48,14 +48,14 @@ def transport(session: Session, clock: AudioClock):
 
 def test_the_sound_goes_on_sample_by_sample_while_the_picture_drops_frames(sink, sound, session, transport) -> None:
     seen: list[int] = []
-    session.changed.connect(lambda _: seen.append(session.playhead))
+    session.changed.connect(lambda _: seen.append(session.view.playhead))
     transport.toggle()
     rng = np.random.default_rng(1)
     for pause_s in rng.uniform(0.005, 0.35, 25):  # a picture that takes up to a third of a second
         sink.run(pause_s)
         transport.tick()
         heard_s = sink.now - 100.0 - sink.latency_s
-        assert session.playhead == max(0, int(heard_s * FPS + 0.01))
+        assert session.view.playhead == max(0, int(heard_s * FPS + 0.01))
     assert max(np.diff(seen)) > 3  # dropped
     played = sink.sound()
     np.testing.assert_array_equal(played[RAMP:], sound.samples[RAMP : len(played)])
@@ -94,42 +94,42 @@ def test_speeds_move_sound_and_time_alike(sink, sound, clock, speed) -> None:
 
 
 def test_j_k_l(sink, session, transport) -> None:
-    session.move_playhead(120)
+    session.view.move_playhead(120)
     transport.faster(1)
     transport.faster(1)
     assert transport.speed == 2.0
     sink.run(0.6)
     transport.tick()
-    assert session.playhead == 150
+    assert session.view.playhead == 150
     transport.faster(-1)
     sink.run(0.61)  # a running device takes the new sound with its next block
     transport.tick()
-    assert (transport.speed, session.playhead) == (-1.0, 135)
+    assert (transport.speed, session.view.playhead) == (-1.0, 135)
     transport.run(0.0)
     sink.run(0.5)
-    assert session.playhead == 135 and not transport.playing
+    assert session.view.playhead == 135 and not transport.playing
 
 
 def test_a_loop_wraps_on_the_sample(sink, sound, session, transport) -> None:
-    session.select((30, 45))
+    session.view.select((30, 45))
     transport.set_loop(True)
     transport.toggle()
-    assert session.playhead == 30
+    assert session.view.playhead == 30
     for _ in range(120):
         sink.run(0.016)
         transport.tick()
-        assert 30 <= session.playhead < 45
+        assert 30 <= session.view.playhead < 45
     places = RATE + np.arange(len(sink.sound())) % (RATE // 2)
     np.testing.assert_array_equal(sink.sound()[RAMP:], sound.samples[places[RAMP:]])
 
 
 @pytest.mark.parametrize("speed", [1.0, -1.0])
 def test_playing_ends_at_the_end_of_the_range(sink, session, transport, speed) -> None:
-    session.select((30, 45))
+    session.view.select((30, 45))
     transport.run(speed)
     sink.run(2.0)
     transport.tick()
-    assert session.playhead == (44 if speed > 0 else 30) and not transport.playing
+    assert session.view.playhead == (44 if speed > 0 else 30) and not transport.playing
     sink.played.clear()
     sink.run(0.1)
     assert not sink.sound()[2 * RAMP :].any()
@@ -139,16 +139,16 @@ def test_a_seek_while_playing_goes_on_from_there(sink, sound, session, transport
     transport.toggle()
     sink.run(0.5)
     transport.tick()
-    session.move_playhead(180)
+    session.view.move_playhead(180)
     sink.played.clear()
     sink.run(0.51)
     transport.tick()
-    assert session.playhead == 192
+    assert session.view.playhead == 192
     np.testing.assert_array_equal(sink.sound()[RAMP:], sound.samples[6 * RATE + RAMP : 6 * RATE + len(sink.sound())])
 
 
 def test_scrubbing_lets_a_short_grain_be_heard_and_then_rests(sink, sound, session, transport) -> None:
-    session.move_playhead(60)
+    session.view.move_playhead(60)
     sink.run(REST_S + 1.0)
     played = np.abs(sink.sound()).max(axis=1)
     heard = np.flatnonzero(played)

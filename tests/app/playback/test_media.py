@@ -50,24 +50,24 @@ def recording(path: Path, seconds: float = 3.0) -> Path:
 
 def open_beside(qtbot: QtBot, desk: Desk, take: Path) -> None:
     with qtbot.waitSignal(desk.session.changed, check_params_cb=lambda c: bool(c & Change.MEDIA), timeout=10_000):
-        desk.session.open(desk.session.take, take)
+        desk.session.open(desk.session.document.take, take)
 
 
 def test_the_sound_beside_a_take_is_played_with_it_and_leaves_with_it(qtbot, desk, tmp_path) -> None:
     path = recording(tmp_path / "a.wav")
     open_beside(qtbot, desk, tmp_path / "a.csv")
-    assert desk.session.audio.path == path
+    assert desk.session.document.audio.path == path
     assert isinstance(desk.transport.clock, AudioClock)
-    desk.session.open(desk.session.take, tmp_path / "b.csv")
-    assert desk.session.audio is None and isinstance(desk.transport.clock, WallClock)
+    desk.session.open(desk.session.document.take, tmp_path / "b.csv")
+    assert desk.session.document.audio is None and isinstance(desk.transport.clock, WallClock)
 
 
 def test_sound_read_for_a_take_that_is_closed_is_dropped(qtbot, desk, tmp_path) -> None:
     recording(tmp_path / "a.wav")
     with qtbot.waitSignal(desk.media.reading.done, timeout=10_000):
-        desk.session.open(desk.session.take, tmp_path / "a.csv")
-        desk.session.open(desk.session.take, tmp_path / "b.csv")
-    assert desk.session.audio is None and not desk.sinks
+        desk.session.open(desk.session.document.take, tmp_path / "a.csv")
+        desk.session.open(desk.session.document.take, tmp_path / "b.csv")
+    assert desk.session.document.audio is None and not desk.sinks
 
 
 def test_sound_attached_by_hand_wins_over_what_is_found(qtbot, desk, tmp_path) -> None:
@@ -75,14 +75,14 @@ def test_sound_attached_by_hand_wins_over_what_is_found(qtbot, desk, tmp_path) -
     open_beside(qtbot, desk, tmp_path / "a.csv")
     with qtbot.waitSignal(desk.session.changed, check_params_cb=lambda c: bool(c & Change.MEDIA), timeout=10_000):
         desk.media.attach("audio", recording(tmp_path / "other.wav"))
-    assert desk.session.audio.path.name == "other.wav"
+    assert desk.session.document.audio.path.name == "other.wav"
 
 
 def test_what_cannot_be_read_gives_a_sentence_and_changes_nothing(qtbot, desk, tmp_path) -> None:
     (tmp_path / "bad.wav").write_text("no sound")
     with qtbot.waitSignal(desk.media.failed, timeout=10_000) as told:
         desk.media.attach("audio", tmp_path / "bad.wav")
-    assert told.args[0].startswith("bad.wav") and desk.session.audio is None
+    assert told.args[0].startswith("bad.wav") and desk.session.document.audio is None
 
 
 def test_without_a_device_the_wall_tells_the_time(qtbot, tmp_path) -> None:
@@ -93,7 +93,7 @@ def test_without_a_device_the_wall_tells_the_time(qtbot, tmp_path) -> None:
         media.attach("audio", recording(tmp_path / "a.wav"))
     assert isinstance(transport.clock, WallClock)
     transport.toggle()
-    qtbot.waitUntil(lambda: session.playhead > 3, timeout=5_000)
+    qtbot.waitUntil(lambda: session.view.playhead > 3, timeout=5_000)
     transport.run(0.0)
     media.close()
 

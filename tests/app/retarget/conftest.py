@@ -47,7 +47,7 @@ def retarget(qtbot: QtBot, short_take: Take) -> Iterator[RetargetActions]:
     column = QVBoxLayout(box)
     for section in actions.sections:
         column.addWidget(section)
-    actions.retargeting.capture_opened.connect(lambda take: session.open(take, None))
+    actions.retargeting.choosing.capture_opened.connect(lambda take: session.open(take, None))
     qtbot.addWidget(box)
     box.show()
     actions.retarget_tool()

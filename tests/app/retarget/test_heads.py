@@ -53,11 +53,11 @@ def test_what_was_matched_by_likeness_or_left_out_is_listed_and_corrected(
     assert section.boxes["mouthSmleLeft"].currentText() == "mouthSmileLeft"
     assert moves(retarget, "mouthSmileLeft") and not moves(retarget, "mouthClose")
 
-    steps = retarget._session.undo.count()
+    steps = retarget._session.document.undo.count()
     pick(section.boxes["mouthOpen"], "mouthClose")
     qtbot.waitUntil(lambda: moves(retarget, "mouthClose"), timeout=30_000)
-    assert retarget._session.undo.count() == steps + 1 and retarget._session.undo.isClean()
-    retarget._session.undo.undo()
+    assert retarget._session.document.undo.count() == steps + 1 and retarget._session.document.undo.isClean()
+    retarget._session.document.undo.undo()
     assert not moves(retarget, "mouthClose")
     assert section.boxes["mouthOpen"].currentText() == "left out"
 
@@ -83,7 +83,7 @@ def test_a_head_that_would_not_be_seen_is_told_and_can_be_read_in_another_unit(
     qtbot.waitUntil(lambda: retarget.retargeting.target.path == path, timeout=30_000)
     head = retarget.retargeting.target.head
     assert head is not None and 200 < np.ptp(head.neutral[:, 1]) < 400
-    assert section.unit.currentText() == "cm" and retarget.retargeting.refused is None
+    assert section.unit.currentText() == "cm" and retarget.retargeting.choosing.refused is None
 
 
 def test_the_wheel_scrolls_past_the_boxes(
@@ -138,7 +138,7 @@ def test_markers_of_another_studio_play_without_a_file_made_by_hand_and_are_corr
     qtbot.waitUntil(lambda: "Mouth_Up" not in state.target.places, timeout=30_000)
     assert "lip_upper" in state.target.places  # for a take that is opened after it
     for _ in range(2):
-        retarget._session.undo.undo()
+        retarget._session.document.undo.undo()
     assert state.target.places["Mouth_Up"] == before and state.target.markers.landmarks["Mouth_Up"] == "lip_upper"
 
 
@@ -149,14 +149,14 @@ def test_a_kept_retarget_comes_back_on_the_head_as_it_was_corrected(
     pick(retarget.heads.boxes["mouthOpen"], "mouthClose")
     qtbot.waitUntil(lambda: moves(retarget, "mouthClose"), timeout=30_000)
     state, session = retarget.retargeting, retarget._session
-    from app.retarget.carry import Carried
+    from engine.editing import Retargeted
 
-    state.show(Carried(session.take))
+    state.show(Retargeted(session.document.take))
     click(retarget.panel.keep_button)
-    qtbot.waitUntil(lambda: session.character is not None, timeout=20_000)
-    assert session.contents().edits[-1].inputs["reading"] == {"names": {"mouthOpen": "mouthClose"}}
+    qtbot.waitUntil(lambda: session.document.character is not None, timeout=20_000)
+    assert session.document.contents().edits[-1].inputs["reading"] == {"names": {"mouthOpen": "mouthClose"}}
     state._kept_heads.forget()  # as in a program that was just started
-    session.undo.undo()
-    session.undo.redo()
-    qtbot.waitUntil(lambda: session.character is not None, timeout=30_000)
-    assert session.character.deltas[SHAPE_INDEX["mouthClose"]].any()
+    session.document.undo.undo()
+    session.document.undo.redo()
+    qtbot.waitUntil(lambda: session.document.character is not None, timeout=30_000)
+    assert session.document.character.deltas[SHAPE_INDEX["mouthClose"]].any()

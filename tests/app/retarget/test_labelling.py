@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.retarget.actions import RetargetActions
-from app.retarget.retargeting import LABELS
+from app.retarget.solving import LABELS
 from engine.formats.labels import read
 from engine.take import SHAPE_INDEX
 from tests.app.retarget.test_retargeting import aimed, click, settle
@@ -34,7 +34,7 @@ def label(retarget: RetargetActions, frame: int, value: int) -> None:
     """Go to a suggested frame, type a search, press a slider to a value, label."""
     labels = retarget.panel.labels
     click(labels.frames[frame])
-    assert retarget._session.playhead == frame
+    assert retarget._session.view.playhead == frame
     labels.weights.search.clear()
     QTest.keyClicks(labels.weights.search, "jawopen")
     bar = labels.weights.sliders["jawOpen"]
@@ -60,7 +60,7 @@ def test_labels_are_met_and_the_least_certain_frame_is_offered_next(
     np.testing.assert_allclose(result.take.weights[[first, second], JAW], [0.5, 0.1], atol=0.02)
 
     click(labelling.panel.labels.loosest_button)
-    loosest = labelling._session.playhead
+    loosest = labelling._session.view.playhead
     assert result.uncertainty[loosest] == result.uncertainty.max() and loosest not in target.labels
     click(labelling.panel.labels.label_button)
     assert loosest in labelling.retargeting.target.labels
@@ -74,7 +74,7 @@ def test_labels_are_met_and_the_least_certain_frame_is_offered_next(
     click(labelling.panel.save_button)
     assert read(tmp_path / "labels.json").labels == dict(labelling.retargeting.target.labels)
     for _ in range(3):
-        labelling._session.undo.undo()
+        labelling._session.document.undo.undo()
     assert not labelling.retargeting.target.labels
     choose_file.append(tmp_path / "labels.json")
     click(labelling.panel.read_button)
@@ -105,7 +105,7 @@ def test_a_label_file_that_names_its_head_opens_that_head_in_one_step(
     (tmp_path / "labels.json").write_text(
         '{"target": "broad.npz", "labels": [{"frame": 12, "weights": {"jawOpen": 0.4}}]}'
     )
-    state, undo = retarget.retargeting, retarget._session.undo
+    state, undo = retarget.retargeting, retarget._session.document.undo
     choose_file.extend(2 * [tmp_path / "labels.json"])
     retarget.read_labels()  # from the menu: its button comes with the method
     settle(qtbot, retarget)

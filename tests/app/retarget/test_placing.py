@@ -7,7 +7,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.retarget.actions import RetargetActions
-from engine.formats.markers_layout import read
+from engine.formats.markers.layout import read
 from tests.app.retarget.test_retargeting import LEFT, aimed, click, settle
 
 __all__ = ["aimed"]  # a fixture
@@ -39,7 +39,7 @@ def test_a_marker_is_moved_removed_and_brought_back(qtbot: QtBot, aimed: Retarge
     click(aimed.places.remove_button)
     assert "chin" not in aimed.retargeting.target.places and "not placed" in shown(aimed, "chin")
     for _ in range(3):
-        aimed._session.undo.undo()
+        aimed._session.document.undo.undo()
     assert aimed.retargeting.target.places["chin"] == before and "by hand" not in shown(aimed, "chin")
 
 
@@ -79,7 +79,7 @@ def test_landmark_files_are_written_and_read(
     click(aimed.places.save_button)
     assert aimed.retargeting.target.head is not None
     assert read(path, head=aimed.retargeting.target.head)["chin"] == 99
-    aimed._session.undo.undo()
+    aimed._session.document.undo.undo()
     click(aimed.places.read_button)
     assert aimed.retargeting.target.places["chin"] == 99
     path.write_text("marker,vertex\nchin,99999999\n")

@@ -31,8 +31,10 @@ def session(qtbot: QtBot) -> Iterator[Session]:
 
 def up_to_date(qtbot: QtBot, session: Session) -> bool:
     def so() -> bool:
-        seen = seen_of(session.take, session.original, session.asked, session.visemes)
-        return session.flags == flags_of(seen)
+        seen = seen_of(
+            session.document.take, session.document.original, session.document.asked, session.document.visemes
+        )
+        return session.document.flags == flags_of(seen)
 
     qtbot.waitUntil(so, timeout=10_000)
     return True
@@ -41,47 +43,53 @@ def up_to_date(qtbot: QtBot, session: Session) -> bool:
 def wild(session: Session, seed: int) -> Patch:
     rng = np.random.default_rng(seed)
     start = int(rng.integers(0, 260))
-    made = paste(session.take, start, rng.random((int(rng.integers(2, 60)), 52)))
+    made = paste(session.document.take, start, rng.random((int(rng.integers(2, 60)), 52)))
     return Patch(made.start, made.weights, made.reached + rng.normal(0, 3, made.reached.shape), made.reached)
 
 
 def test_flags_follow_every_edit_and_every_step_back(qtbot: QtBot, session: Session) -> None:
     assert up_to_date(qtbot, session)
-    assert [flag.kind for flag in session.flags or ()] == ["lost"]
+    assert [flag.kind for flag in session.document.flags or ()] == ["lost"]
     for seed in range(6):
-        session.undo.push(EditCommand(session, wild(session, seed), "wild"))
+        session.document.undo.push(EditCommand.of(session.document, wild(session, seed), "wild"))
         if seed % 2:
             assert up_to_date(qtbot, session)
-    assert up_to_date(qtbot, session) and len(session.flags or ()) > 10
-    session.undo.push(VisemesCommand(session, attached([Cue(2.0, 2.2, "M"), Cue(5.0, 5.3, "B")], "a"), "attach"))
+    assert up_to_date(qtbot, session) and len(session.document.flags or ()) > 10
+    session.document.undo.push(
+        VisemesCommand.of(session.document, attached([Cue(2.0, 2.2, "M"), Cue(5.0, 5.3, "B")], "a"), "attach")
+    )
     assert up_to_date(qtbot, session)
     for _ in range(3):
-        session.undo.undo()
+        session.document.undo.undo()
     assert up_to_date(qtbot, session)
-    session.undo.setIndex(0)
-    assert up_to_date(qtbot, session) and [flag.kind for flag in session.flags or ()] == ["lost"]
+    session.document.undo.setIndex(0)
+    assert up_to_date(qtbot, session) and [flag.kind for flag in session.document.flags or ()] == ["lost"]
 
 
 def test_flags_of_a_closed_take_never_come(qtbot: QtBot, session: Session) -> None:
     for frames in (300, 20, 100):
         session.open(Take(weights=np.full((frames, 52), 0.5), fps=30.0), None)
-        assert session.flags is None
+        assert session.document.flags is None
     assert up_to_date(qtbot, session)
-    assert all(flag.stop <= 100 for flag in session.flags or ())
+    assert all(flag.stop <= 100 for flag in session.document.flags or ())
 
 
 def test_a_take_filled_where_it_was_lost_has_no_flag_there(qtbot: QtBot, session: Session) -> None:
-    filled = Patch.between(session.take, session.take.with_rows(252, session.take.weights[252:276] + 0.01), (252, 276))
-    session.undo.push(EditCommand(session, filled, "fill"))
-    assert up_to_date(qtbot, session) and not session.flags
+    filled = Patch.between(
+        session.document.take,
+        session.document.take.with_rows(252, session.document.take.weights[252:276] + 0.01),
+        (252, 276),
+    )
+    session.document.undo.push(EditCommand.of(session.document, filled, "fill"))
+    assert up_to_date(qtbot, session) and not session.document.flags
 
 
 def test_sound_that_is_attached_is_listened_to_and_forgotten_once_it_is_detached(
     qtbot: QtBot, session: Session
 ) -> None:
     assert up_to_date(qtbot, session)
-    silence = np.zeros(round(8_000 * (session.take.duration_s + 1)), np.float32)
-    session.attach_audio(Audio(silence, 8_000))
-    qtbot.waitUntil(lambda: "short" in {flag.kind for flag in session.flags or ()}, timeout=10_000)
-    session.attach_audio(None)
+    silence = np.zeros(round(8_000 * (session.document.take.duration_s + 1)), np.float32)
+    session.document.attach_audio(Audio(silence, 8_000))
+    qtbot.waitUntil(lambda: "short" in {flag.kind for flag in session.document.flags or ()}, timeout=10_000)
+    session.document.attach_audio(None)
     assert up_to_date(qtbot, session)

@@ -17,7 +17,7 @@ from engine import project
 from engine.editing import Patch
 from engine.errors import EngineError
 from engine.extended import bundled_face
-from engine.project import Marks, Note, Pin, Project, Span
+from engine.project import Marks, Note, Pin, Project, Span, Verdict
 from engine.take import SHAPES, Take
 from tests.performance import kills
 
@@ -46,10 +46,10 @@ def push(session: Session, seed: int) -> EditCommand:
     start = int(rng.integers(0, 20))
     weights = rng.random((12, len(SHAPES)))
     reached = measure(weights)
-    asked = np.where(rng.random(reached.shape) < 0.3, reached + 1.0, session.controls[start : start + 12])
+    asked = np.where(rng.random(reached.shape) < 0.3, reached + 1.0, session.document.controls[start : start + 12])
     patch = Patch(start, weights, asked, reached)
-    command = EditCommand(session, patch, f"edit {seed}", inputs={"seed": seed})
-    session.undo.push(command)
+    command = EditCommand.of(session.document, patch, f"edit {seed}", inputs={"seed": seed})
+    session.document.undo.push(command)
     return command
 
 
@@ -59,7 +59,7 @@ def kept(qtbot: QtBot, keeper: Keeper, change: Callable[[], object]) -> None:
         change()
     qtbot.waitUntil(lambda: keeper._work.idle, timeout=10_000)
     with keeper._lock:
-        stored, now = keeper._project.contents, keeper._session.contents()
+        stored, now = keeper._project.contents, keeper._session.document.contents()
     assert (stored.edits, stored.position, stored.marks) == (now.edits, now.position, now.marks)
 
 
@@ -78,13 +78,15 @@ def refused(qtbot: QtBot, keeper: Keeper, path: Path) -> str:
 
 def alike(left: Session, right: Session) -> bool:
     for name in ("weights", "lost", "rotations"):
-        np.testing.assert_array_equal(getattr(left.take, name), getattr(right.take, name))
-        np.testing.assert_array_equal(getattr(left.original, name), getattr(right.original, name))
-    np.testing.assert_allclose(left.controls, right.controls, atol=1e-9)
-    np.testing.assert_array_equal(left.asked, right.asked)
-    titles = [[stack.text(index) for index in range(stack.count())] for stack in (left.undo, right.undo)]
+        np.testing.assert_array_equal(getattr(left.document.take, name), getattr(right.document.take, name))
+        np.testing.assert_array_equal(getattr(left.document.original, name), getattr(right.document.original, name))
+    np.testing.assert_allclose(left.document.controls, right.document.controls, atol=1e-9)
+    np.testing.assert_array_equal(left.document.asked, right.document.asked)
+    titles = [
+        [stack.text(index) for index in range(stack.count())] for stack in (left.document.undo, right.document.undo)
+    ]
     assert titles[0] == titles[1]
-    assert (left.undo.index(), left.marks) == (right.undo.index(), right.marks)
+    assert (left.document.undo.index(), left.document.marks) == (right.document.undo.index(), right.document.marks)
     return True
 
 
@@ -103,14 +105,15 @@ def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make:
     session = first._session
     for seed in range(4):
         kept(qtbot, first, lambda seed=seed: push(session, seed))
-    kept(qtbot, first, session.undo.undo)
-    kept(qtbot, first, session.undo.undo)
-    kept(qtbot, first, session.undo.redo)
+    kept(qtbot, first, session.document.undo.undo)
+    kept(qtbot, first, session.document.undo.undo)
+    kept(qtbot, first, session.document.undo.redo)
     marked = Marks(spans=(Span(2, 9),), pins=(Pin(4, {"jawOpen": 0.5}, 0, 9),))
-    kept(qtbot, first, lambda: session.undo.push(MarkCommand(session, marked, "mark a span")))
+    kept(qtbot, first, lambda: session.document.undo.push(MarkCommand.of(session.document, marked, "mark a span")))
     noted = replace(marked, notes=(Note(3, "Ana", "2025-01-02T03:04:05Z", "here"),))
-    kept(qtbot, first, lambda: session.set_marks(noted))
-    kept(qtbot, first, lambda: session.undo.push(MarkCommand(session, replace(noted, verdict="approved"), "approve")))
+    kept(qtbot, first, lambda: session.document.set_marks(noted))
+    judged = replace(noted, verdicts=(Verdict("Approved"),))
+    kept(qtbot, first, lambda: session.document.undo.push(MarkCommand.of(session.document, judged, "approve")))
     assert second.left_over() == []  # its program still runs
     first.close()
 
@@ -119,16 +122,16 @@ def test_work_that_was_left_comes_back_with_its_undo_history(qtbot: QtBot, make:
     assert left.sentence.startswith("random (00:00:01:10), 5 edits, ")
     second.open(opened(second._session, Wish(left.path, left_over=True)))
     again = second._session
-    assert alike(session, again) and again.edited and again.path is None
-    while session.undo.canRedo():
-        session.undo.redo()
-        again.undo.redo()
-    while session.undo.canUndo():
+    assert alike(session, again) and again.document.edited and again.document.path is None
+    while session.document.undo.canRedo():
+        session.document.undo.redo()
+        again.document.undo.redo()
+    while session.document.undo.canUndo():
         assert alike(session, again)
-        session.undo.undo()
-        again.undo.undo()
-    np.testing.assert_array_equal(again.take.weights, again.original.weights)
-    assert again.marks == Marks()
+        session.document.undo.undo()
+        again.document.undo.undo()
+    np.testing.assert_array_equal(again.document.take.weights, again.document.original.weights)
+    assert again.document.marks == Marks()
     kept(qtbot, second, lambda: push(again, 9))  # it goes on where it was
     second.close()
     (left,) = make().left_over()
@@ -152,8 +155,8 @@ def test_a_step_that_was_merged_is_kept_as_it_became(qtbot: QtBot, make: Made) -
     for value in (0.25, 0.5):
         rows = np.full((5, len(SHAPES)), value)
         patch = Patch(2, rows, measure(rows), measure(rows))
-        kept(qtbot, first, lambda patch=patch: session.undo.push(Nudge(session, patch, "nudge")))
-    assert session.undo.count() == 1
+        kept(qtbot, first, lambda patch=patch: session.document.undo.push(Nudge.of(session.document, patch, "nudge")))
+    assert session.document.undo.count() == 1
     first.close()
     second.open(opened(second._session, Wish(second.left_over()[0].path, left_over=True)))
     assert alike(session, second._session)
@@ -165,17 +168,17 @@ def test_saving_moves_the_work_to_the_project_and_every_later_step_too(
     first, path = make(), tmp_path / "Ärger 顔.retake"
     session = first._session
     kept(qtbot, first, lambda: push(session, 1))
-    assert session.edited
+    assert session.document.edited
     saved(qtbot, first, path)
-    assert (first.path, session.path, session.edited) == (path, path, False)
+    assert (first.path, session.document.path, session.document.edited) == (path, path, False)
     assert first.left_over() == [] and list((tmp_path / "data" / "unsaved").glob("*.retake")) == []
     kept(qtbot, first, lambda: push(session, 2))
-    assert not session.edited  # it is safe in the user's own file
+    assert not session.document.edited  # it is safe in the user's own file
     first.close()
 
     second = make()
     second.open(opened(second._session, Wish(path)))
-    assert alike(session, second._session) and not second._session.edited and second.path == path
+    assert alike(session, second._session) and not second._session.document.edited and second.path == path
     assert second.left_over() == []
 
 
@@ -184,7 +187,7 @@ def test_saving_before_any_edit_and_over_an_older_project(qtbot: QtBot, make: Ma
     saved(qtbot, first, path)
     push(second._session, 1)
     assert refused(qtbot, second, path) == "a.retake is open in another Retake."
-    assert second._session.edited and second.path is None
+    assert second._session.document.edited and second.path is None
     first.close()
     saved(qtbot, second, path)
     saved(qtbot, second, path)
@@ -214,7 +217,7 @@ def test_opening_another_take_neither_loses_nor_empties_what_was_kept(
     (left,) = first.left_over()
     first.open(opened(first._session, Wish(left.path, left_over=True)))
     saved(qtbot, first, tmp_path / "a.retake")
-    first._session.open(first._session.original, None)  # the very same take again
+    first._session.open(first._session.document.original, None)  # the very same take again
     push(first._session, 2)
     first.close()
     assert len(Project.open(tmp_path / "a.retake").contents.edits) == 1
@@ -224,11 +227,11 @@ def test_opening_another_take_neither_loses_nor_empties_what_was_kept(
 def test_a_project_that_cannot_be_read_leaves_the_session_as_it_was(qtbot: QtBot, make: Made, tmp_path: Path) -> None:
     first = make()
     kept(qtbot, first, lambda: push(first._session, 1))
-    take = first._session.take
+    take = first._session.document.take
     (tmp_path / "a.retake").write_bytes(b"nonsense" * 500)
     with pytest.raises(EngineError, match="not a Retake project"):
         first.open(opened(first._session, Wish(tmp_path / "a.retake")))
-    assert first._session.take is take
+    assert first._session.document.take is take
     kept(qtbot, first, lambda: push(first._session, 2))
 
 
@@ -249,7 +252,7 @@ def test_a_folder_that_cannot_be_written_is_told_once_and_tried_again_with_each_
     kept(qtbot, first, lambda: push(first._session, 3))
     first.close()
     second.open(opened(second._session, Wish(second.left_over()[0].path, left_over=True)))
-    assert alike(first._session, second._session) and second._session.undo.count() == 4
+    assert alike(first._session, second._session) and second._session.document.undo.count() == 4
 
 
 def test_a_full_disk_keeps_the_work_in_memory_until_there_is_room(qtbot: QtBot, make: Made, tmp_path: Path) -> None:
@@ -261,13 +264,13 @@ def test_a_full_disk_keeps_the_work_in_memory_until_there_is_room(qtbot: QtBot, 
     with qtbot.waitSignal(first.failed, timeout=10_000) as told:
         push(first._session, 1)
     assert told.args[0] == "There is no room left on the disk for a.retake." and "memory" in told.args[1]
-    assert first._session.edited and first._session.undo.count() == 2
+    assert first._session.document.edited and first._session.document.undo.count() == 2
     assert "no room left" in refused(qtbot, first, tmp_path / "a.retake")
     database.execute("PRAGMA max_page_count = 1000000")
     with qtbot.waitSignal(first.mended, timeout=10_000) as over:
         kept(qtbot, first, lambda: push(first._session, 2))
     assert over.args == ["There is no room left on the disk for a.retake."]
-    assert not first._session.edited
+    assert not first._session.document.edited
     (tmp_path / "a.retake").unlink()
     push(first._session, 3)
     saved(qtbot, first, tmp_path / "a.retake")
@@ -297,7 +300,7 @@ def test_what_cannot_be_written_is_edited_as_unsaved_work(
     second, before = make(), path.read_bytes()
     monkeypatch.setattr("engine.project.store.os.access", lambda *_: False)
     second.open(opened(second._session, Wish(path)))
-    assert second.path is None and second._session.path == path
+    assert second.path is None and second._session.document.path == path
     kept(qtbot, second, lambda: push(second._session, 1))
     second.close()
     assert path.read_bytes() == before
@@ -346,9 +349,9 @@ def test_the_session_s_contents_are_what_its_edits_come_to(make: Made) -> None:
     session = make()._session
     for seed in range(5):
         push(session, seed)
-    session.undo.undo()
-    state = project.replay(session.contents())
-    np.testing.assert_array_equal(state.take.weights, session.take.weights)
-    np.testing.assert_array_equal(state.asked, session.asked)
-    session.set_marks(replace(session.marks, verdict="approved"))
-    assert session.contents().marks.verdict == "approved"
+    session.document.undo.undo()
+    state = project.replay(session.document.contents())
+    np.testing.assert_array_equal(state.take.weights, session.document.take.weights)
+    np.testing.assert_array_equal(state.asked, session.document.asked)
+    session.document.set_marks(replace(session.document.marks, verdicts=(Verdict("Approved"),)))
+    assert session.document.contents().marks.verdict == "Approved"

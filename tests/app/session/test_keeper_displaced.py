@@ -59,7 +59,7 @@ def test_all_of_the_work_goes_on_as_unsaved_work(
     os.replace(newcomer, path) if how == "replaced" else path.unlink()
     step = (lambda: push(first._session, 3)) if noticed == "at the next step" else first._looks.timeout.emit
     assert f"a.retake was {'replaced by' if how == 'replaced' else 'moved or'}" in displaced(qtbot, first, step)
-    assert first.path is None and first._session.edited
+    assert first.path is None and first._session.document.edited
     kept(qtbot, first, lambda: push(first._session, 4))
     session = first._session
     first.close()
@@ -69,7 +69,9 @@ def test_all_of_the_work_goes_on_as_unsaved_work(
     second = make()
     (left,) = second.left_over()
     second.open(opened(second._session, Wish(left.path, left_over=True)))
-    assert alike(session, second._session) and second._session.undo.count() == 3 + (noticed == "at the next step")
+    assert alike(session, second._session) and second._session.document.undo.count() == 3 + (
+        noticed == "at the next step"
+    )
 
 
 def test_saving_anew_does_not_replace_a_newcomer_unasked_and_does_when_asked(
@@ -80,10 +82,10 @@ def test_saving_anew_does_not_replace_a_newcomer_unasked_and_does_when_asked(
     saved(qtbot, first, path)
     os.replace(newcomer, path)
     assert "replaced by another program" in refused(qtbot, first, path)
-    qtbot.waitUntil(lambda: first._session.edited, timeout=10_000)
+    qtbot.waitUntil(lambda: first._session.document.edited, timeout=10_000)
     assert path.read_bytes() == wanted and first.path is None
     saved(qtbot, first, path)  # the file dialog asked now: the name is no more that of the open project
-    assert first.path == path and not first._session.edited
+    assert first.path == path and not first._session.document.edited
     first.close()
     assert len(Project.open(path, read_only=True).contents.edits) == 1
     assert list((tmp_path / "data" / "unsaved").iterdir()) == []
@@ -126,7 +128,7 @@ def test_another_program_does_not_take_a_recording_that_is_still_made(make: Made
     spool.path.write_bytes(whole[: whole.rindex(b"\n", 0, -1) + 200] + b"\0" * 4096)  # as a power cut leaves it
     (left,) = watcher.left_over()
     watcher.open(opened(watcher._session, Wish(left.path, left_over=True)))
-    np.testing.assert_allclose(watcher._session.take.weights, weights[:-1], atol=1e-9)
+    np.testing.assert_allclose(watcher._session.document.take.weights, weights[:-1], atol=1e-9)
     assert not list(folder.glob("*.csv"))
 
 
@@ -214,7 +216,7 @@ def _is_open(path: Path) -> bool:
 
 
 def test_opening_a_file_removes_what_a_kill_was_writing_beside_it(make: Made, tmp_path: Path) -> None:
-    code = "import os, sys; from pathlib import Path; from engine.formats.atomic import replacement; "
+    code = "import os, sys; from pathlib import Path; from engine.formats.base.atomic import replacement; "
     code += "made = replacement(Path(sys.argv[1])); made.__enter__(); os._exit(0)"
     subprocess.run([sys.executable, "-c", code, str(tmp_path / "take.csv")], check=True)
     write_take(Take(weights=np.zeros((9, len(SHAPES))), fps=24.0), beside := tmp_path / "other.csv")

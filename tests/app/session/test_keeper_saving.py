@@ -43,14 +43,14 @@ def test_saving_returns_at_once_and_edits_made_meanwhile_are_in_the_file(
     first.save_as(path)
     assert disk.reached.wait(10.0) and first.saving == path and first.path is None
     push(session, 2)
-    session.undo.undo()
+    session.document.undo.undo()
     push(session, 3)
     copied: list[int] = []
     first.saved.connect(lambda at: copied.append(len(first._project.contents.edits)))
     with qtbot.waitSignal(first.saved, timeout=10_000):
         disk.go.set()
     assert copied == [2] and first.saving is None and first.path == path  # they came with the copy itself
-    qtbot.waitUntil(lambda: not session.edited, timeout=10_000)
+    qtbot.waitUntil(lambda: not session.document.edited, timeout=10_000)
     first.close()
     second.open(opened(second._session, Wish(path)))
     assert alike(session, second._session)
@@ -68,7 +68,7 @@ def test_a_step_that_the_old_file_has_no_room_for_waits_for_the_new_one(
     database.execute(f"PRAGMA max_page_count = {database.execute('PRAGMA page_count').fetchone()[0]}")
     push(first._session, 2)
     disk.go.set()
-    qtbot.waitUntil(lambda: first.path == path and not first._session.edited, timeout=10_000)
+    qtbot.waitUntil(lambda: first.path == path and not first._session.document.edited, timeout=10_000)
     first.close()
     second.open(opened(second._session, Wish(path)))
     assert alike(first._session, second._session)
@@ -87,7 +87,7 @@ def test_a_save_that_is_stopped_leaves_the_old_file_and_the_unsaved_work(
         first.stop_saving()
         disk.go.set()
     assert told.args[0] == "The project was not saved." and first.saving is None
-    assert path.read_bytes() == b"an older file" and first._session.edited and first.path is None
+    assert path.read_bytes() == b"an older file" and first._session.document.edited and first.path is None
     assert [entry.name for entry in tmp_path.iterdir() if entry.is_file()] == ["a.retake"]
     kept(qtbot, first, lambda: push(first._session, 2))
     saved(qtbot, first, path)
@@ -132,7 +132,7 @@ def test_the_project_that_is_open_can_be_opened_again(qtbot: QtBot, make: Made, 
     kept(qtbot, first, lambda: push(first._session, 2))
     first.release()
     first.open(opened(first._session, Wish(path)))
-    assert first.path == path and first._session.undo.count() == 2
+    assert first.path == path and first._session.document.undo.count() == 2
     kept(qtbot, first, lambda: push(first._session, 3))
 
 
@@ -142,7 +142,7 @@ def test_no_room_for_a_new_project_is_a_sentence_and_the_work_stays(
     first = make()
     kept(qtbot, first, lambda: push(first._session, 1))
     assert "could not be written" in refused(qtbot, first, tmp_path / "no folder" / "a.retake")
-    assert first._session.edited and first._session.undo.count() == 1
+    assert first._session.document.edited and first._session.document.undo.count() == 1
     kept(qtbot, first, lambda: push(first._session, 2))
 
 

@@ -32,9 +32,9 @@ def timeline(qtbot: QtBot) -> Iterator[Timeline]:
     session = Session(Take(weights=np.zeros((300, len(SHAPES))), fps=FPS))
     shown = Timeline(session, DARK, gutter_px=100)
     qtbot.addWidget(shown)
-    session.visemes = attached(CUES, "a.TextGrid")
+    session.document.visemes = attached(CUES, "a.TextGrid")
     shown.resize(100 + 600 + 18, 120)
-    session.set_view(0, 300)
+    session.view.set_range(0, 300)
     with qtbot.waitExposed(shown):
         shown.show()
     yield shown
@@ -52,7 +52,7 @@ def drag(timeline: Timeline, start: QPoint, stop: QPoint) -> None:
 
 
 def lane_of(timeline: Timeline) -> VisemeLane:
-    lane = timeline._session.visemes
+    lane = timeline._session.document.visemes
     assert lane is not None
     return lane
 
@@ -62,12 +62,12 @@ def test_a_boundary_is_dragged_by_one_undo_step_and_the_originals_stay(timeline:
     drag(timeline, at(timeline, 2.0), at(timeline, 2.4))
     moved = lane_of(timeline)
     assert abs(moved.cues[0].stop_s - 2.4) < 0.02 and moved.cues[1].start_s == moved.cues[0].stop_s
-    assert moved.originals == CUES and session.undo.count() == 1
+    assert moved.originals == CUES and session.document.undo.count() == 1
     QTest.mouseClick(timeline, LEFT, PLAIN, at(timeline, 2.41))  # taken hold of and not moved: nothing is done
-    assert session.undo.count() == 1
-    session.undo.undo()
+    assert session.document.undo.count() == 1
+    session.document.undo.undo()
     assert lane_of(timeline).cues == before.cues
-    session.undo.redo()
+    session.document.undo.redo()
     assert lane_of(timeline).cues == moved.cues
 
 
@@ -76,11 +76,11 @@ def test_a_step_back_while_a_boundary_is_held_lets_go_of_it(timeline: Timeline) 
     drag(timeline, at(timeline, 2.0), at(timeline, 2.4))
     QTest.mousePress(timeline, LEFT, PLAIN, at(timeline, 5.0))
     QTest.mouseMove(timeline, at(timeline, 6.0))
-    session.undo.undo()
+    session.document.undo.undo()
     QTest.mouseMove(timeline, at(timeline, 6.5))
     timeline.grab()
     QTest.mouseRelease(timeline, LEFT, PLAIN, at(timeline, 6.5))
-    assert lane_of(timeline).cues == CUES and session.undo.index() == 0
+    assert lane_of(timeline).cues == CUES and session.document.undo.index() == 0
 
 
 def test_a_boundary_stops_at_its_neighbours(timeline: Timeline) -> None:
@@ -93,9 +93,9 @@ def test_a_boundary_stops_at_its_neighbours(timeline: Timeline) -> None:
 def test_inside_a_block_a_press_scrubs_and_a_double_click_selects(timeline: Timeline) -> None:
     session = timeline._session
     QTest.mouseClick(timeline, LEFT, PLAIN, at(timeline, 2.5))
-    assert session.playhead == 75 and session.undo.count() == 0
+    assert session.view.playhead == 75 and session.document.undo.count() == 0
     QTest.mouseDClick(timeline, LEFT, PLAIN, at(timeline, 2.5))
-    assert session.selection == (60, 90) == lane_of(timeline).frames_of(1, FPS)
+    assert session.view.selection == (60, 90) == lane_of(timeline).frames_of(1, FPS)
 
 
 def test_the_pointer_shows_what_a_press_takes_hold_of(timeline: Timeline) -> None:
@@ -114,7 +114,7 @@ def test_a_menu_changes_what_is_said(qtbot: QtBot, timeline: Timeline) -> None:
     assert menu is not None and [action.text() for action in menu.actions()][: len(NAMES)] == [t for _, t in choices()]
     menu.actions()[class_of("UW")].trigger()
     menu.close()
-    assert lane_of(timeline).cues[1].label == "uw" and timeline._session.undo.undoText() == "say uw"
+    assert lane_of(timeline).cues[1].label == "uw" and timeline._session.document.undo.undoText() == "say uw"
 
 
 def test_a_name_is_typed_with_or_without_times(qtbot: QtBot, timeline: Timeline) -> None:
@@ -127,7 +127,9 @@ def test_a_name_is_typed_with_or_without_times(qtbot: QtBot, timeline: Timeline)
     timeline.visemes.entry.selectAll()
     QTest.keyClicks(timeline.visemes.entry, "r 2.25 3.5")
     QTest.keyClick(timeline.visemes.entry, Qt.Key.Key_Return)
-    assert lane_of(timeline).cues[:2] == (Cue(1.0, 2.25, "M"), Cue(2.25, 3.5, "r")) and session.undo.count() == 2
+    assert (
+        lane_of(timeline).cues[:2] == (Cue(1.0, 2.25, "M"), Cue(2.25, 3.5, "r")) and session.document.undo.count() == 2
+    )
 
 
 @pytest.mark.parametrize("typed", ["quux", "M 1", "M 3 2", "M a b", ""])
@@ -138,7 +140,7 @@ def test_what_cannot_be_said_is_one_sentence_and_changes_nothing(qtbot: QtBot, t
     QTest.keyClicks(timeline.visemes.entry, typed)
     with qtbot.waitSignal(timeline.visemes.failed):
         QTest.keyClick(timeline.visemes.entry, Qt.Key.Key_Return)
-    assert lane_of(timeline) is before and timeline._session.undo.count() == 0
+    assert lane_of(timeline) is before and timeline._session.document.undo.count() == 0
 
 
 def test_escape_drops_what_is_typed(qtbot: QtBot, timeline: Timeline) -> None:
@@ -148,7 +150,7 @@ def test_escape_drops_what_is_typed(qtbot: QtBot, timeline: Timeline) -> None:
     QTest.keyClick(entry, Qt.Key.Key_Escape)
     assert timeline.visemes.entry is None
     assert lane_of(timeline).cues == CUES
-    assert timeline._session.undo.count() == 0
+    assert timeline._session.document.undo.count() == 0
 
 
 def test_all_is_shifted_by_what_is_typed_or_to_the_playhead(timeline: Timeline) -> None:
@@ -156,14 +158,14 @@ def test_all_is_shifted_by_what_is_typed_or_to_the_playhead(timeline: Timeline) 
     QTest.keyClicks(timeline.visemes.entry, "-0.5")
     QTest.keyClick(timeline.visemes.entry, Qt.Key.Key_Return)
     assert lane_of(timeline).times_s[0].tolist() == [0.5, 1.5]
-    timeline._session.move_playhead(120)
+    timeline._session.view.move_playhead(120)
     timeline.visemes._begin_at_playhead(lane_of(timeline), 1)
     assert lane_of(timeline).times_s[1, 0] == pytest.approx(4.0) and lane_of(timeline).cues == CUES
 
 
 def bar(timeline: Timeline) -> list[QColor]:
     """The strong edge of the lane, pixel by pixel."""
-    timeline._session.move_playhead(299)
+    timeline._session.view.move_playhead(299)
     image = timeline.grab().toImage().convertToFormat(QImage.Format.Format_RGB32)
     box = timeline.lane_box("visemes").adjusted(0, 3, 0, -3)
     return [image.pixelColor(x, round(box.bottom() - BAR_PX / 2)) for x in range(100, 700)]
@@ -183,8 +185,8 @@ def test_far_away_colours_mix_by_how_long_each_is_said(timeline: Timeline) -> No
     """A pixel that holds many cues has the mean of their colours, wherever the view begins."""
     session = timeline._session
     cues = [Cue(i * 0.01, (i + 1) * 0.01, "M" if i % 4 else "F") for i in range(1000)]
-    session.set_visemes(attached(cues, "fast"))
-    session.set_view(0, 300)
+    session.document.set_visemes(attached(cues, "fast"))
+    session.view.set_range(0, 300)
     mixed = bar(timeline)[5:-5]
     names = group_colours(DARK)
     lips, teeth = QColor(names[1]), QColor(names[2])
@@ -195,7 +197,7 @@ def test_far_away_colours_mix_by_how_long_each_is_said(timeline: Timeline) -> No
 
 def test_without_visemes_there_is_no_lane(timeline: Timeline) -> None:
     session, height = timeline._session, timeline.sizeHint().height()
-    session.set_visemes(None)
+    session.document.set_visemes(None)
     assert timeline.lane_box("visemes").isEmpty() and timeline.sizeHint().height() < height
     assert timeline.visemes.edge_at(300) is None and timeline.visemes.tell(300) == ""
 
@@ -210,38 +212,38 @@ FLAGS = (
 
 def test_a_mark_is_clicked_to_go_there_and_tells_why(timeline: Timeline) -> None:
     session = timeline._session
-    session.set_flags(FLAGS)
+    session.document.set_flags(FLAGS)
     timeline.grab()
     QTest.mouseClick(timeline, LEFT, PLAIN, at(timeline, 30 / FPS, "flags"))
-    assert session.playhead == 30 and session.selection is None
+    assert session.view.playhead == 30 and session.view.selection is None
     QTest.mouseMove(timeline, at(timeline, 200 / FPS, "flags"))
     assert timeline.cursor().shape() == Qt.CursorShape.PointingHandCursor
     assert timeline.told_at(QPointF(at(timeline, 200 / FPS, "flags"))) == "Still."
     QTest.mouseClick(timeline, LEFT, PLAIN, at(timeline, 150 / FPS, "flags"))
-    assert session.playhead == 150
+    assert session.view.playhead == 150
 
 
 def test_marks_that_would_touch_are_one_until_they_have_room(timeline: Timeline) -> None:
     session = timeline._session
-    session.set_flags(FLAGS)
+    session.document.set_flags(FLAGS)
     timeline.grab()
     marks = {mark.flag.start: mark.others for mark in timeline._flags.marks}
     assert marks == {30: 0, 100: 1, 200: 0}
     assert "1 more here: zoom in" in timeline.told_at(QPointF(at(timeline, 100 / FPS, "flags")))
-    session.set_view(95, 125)
+    session.view.set_range(95, 125)
     timeline.grab()
     assert [mark.flag.start for mark in timeline._flags.marks] == [100, 102]
-    session.set_view(110, 150)
+    session.view.set_range(110, 150)
     timeline.grab()
     assert timeline._flags.marks == []
-    session.set_view(95, 125)
+    session.view.set_range(95, 125)
     timeline.grab()
     places = [mark.x for mark in timeline._flags.marks]
     assert min(np.diff(places)) >= APART_PX
 
 
 def test_heavier_flags_are_drawn_larger_and_in_another_colour(timeline: Timeline) -> None:
-    timeline._session.set_flags(FLAGS)
+    timeline._session.document.set_flags(FLAGS)
     image = timeline.grab().toImage()
     box = timeline.lane_box("flags")
     shown = []
@@ -262,7 +264,7 @@ def test_the_flags_lane_says_when_there_is_nothing(timeline: Timeline) -> None:
     session = timeline._session
     pictures = []
     for flags in (None, (), FLAGS):
-        session.set_flags(flags)  # type: ignore[arg-type]
+        session.document.set_flags(flags)  # type: ignore[arg-type]
         pictures.append(timeline.grab().toImage())
     assert pictures[0] != pictures[1] != pictures[2]
 
@@ -270,10 +272,10 @@ def test_the_flags_lane_says_when_there_is_nothing(timeline: Timeline) -> None:
 @pytest.mark.parametrize("notches", [3, -3])
 def test_zoom_and_pan_leave_the_selection(timeline: Timeline, notches: int) -> None:
     session = timeline._session
-    session.select((60, 90))
+    session.view.select((60, 90))
     for factor in (1.5, 8.0, 0.01):
-        session.zoom_view(factor, 75)
-    session.set_view(200, 260)
+        session.view.zoom(factor, 75)
+    session.view.set_range(200, 260)
     wheel = QPointF(at(timeline, 2.0, "flags"))
     event = QWheelEvent(
         wheel,
@@ -286,4 +288,4 @@ def test_zoom_and_pan_leave_the_selection(timeline: Timeline, notches: int) -> N
         False,
     )
     QApplication.sendEvent(timeline, event)
-    assert session.selection == (60, 90)
+    assert session.view.selection == (60, 90)

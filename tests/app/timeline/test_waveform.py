@@ -55,13 +55,13 @@ def test_the_lane_is_there_only_while_there_is_sound(timeline: Timeline) -> None
     session = timeline._session
     assert timeline.sizeHint().height() == RULER_PX + SPANS_PX + FLAGS_PX
     before = timeline.grab().toImage()
-    session.attach_audio(Audio(np.ones(RATE, np.float32) * 0.5, RATE))
-    session.slide("audio", 5.0)
+    session.document.attach_audio(Audio(np.ones(RATE, np.float32) * 0.5, RATE))
+    session.document.slide("audio", 5.0)
     assert timeline.sizeHint().height() == RULER_PX + AUDIO_PX + SPANS_PX + FLAGS_PX
     image = timeline.grab().toImage()
     middle = RULER_PX + AUDIO_PX // 2
     quiet = QColor(DARK.quiet)
     assert image.pixelColor(round(timeline.x_of(165)), middle) == quiet  # at 5.5 s
     assert image.pixelColor(round(timeline.x_of(60)), middle) != quiet
-    session.attach_audio(None)
+    session.document.attach_audio(None)
     assert timeline.grab().toImage() == before

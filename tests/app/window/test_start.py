@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
-HEAVY = ("scipy", "torch", "pyrender", "av")
+HEAVY = ("scipy", "torch", "pyrender", "trimesh", "av")
 LOADED = "app.window.start, app.window.main_window, app.bench.measure"
 ASKED = f"import sys, {LOADED}; print(*[name for name in {HEAVY} if name in sys.modules])"
 

@@ -13,7 +13,7 @@ from engine.inpaint.gap import statistics_of
 from engine.inpaint.infer import Filler
 from engine.inpaint.network import Generator, GeneratorConfig
 from engine.inpaint.regions import REGIONS, region_shapes
-from engine.inpaint.request import Request, merged_pins
+from engine.inpaint.request import FillRequest, merged_pins
 from engine.lab.performer import demo
 from engine.lab.performer.performer import perform
 from engine.models.resample import interpolate
@@ -181,9 +181,9 @@ def test_everything_with_nothing_to_go_by_is_refused(take: Take, filler: Filler)
 
 def test_overlapping_spans_and_stray_pins_are_refused(take: Take) -> None:
     with pytest.raises(EditError, match="overlap at frame 60"):
-        fill_spans(take, [(50, 70), (60, 80)], Request((0, 0)))
+        fill_spans(take, [(50, 70), (60, 80)], FillRequest((0, 0)))
     with pytest.raises(EditError, match="frame 75 lies outside"):
-        fill_spans(take, [(50, 70)], Request((0, 0), pins={75: {"jawOpen": 0.1}}))
+        fill_spans(take, [(50, 70)], FillRequest((0, 0), pins={75: {"jawOpen": 0.1}}))
 
 
 def test_contradictory_pins_are_refused_and_others_joined() -> None:
@@ -203,7 +203,7 @@ def test_what_lies_in_lost_frames_and_spans_to_be_made_is_no_context(fps: float,
     span, gone, marked = (100 * pace, 130 * pace), (130 * pace, 145 * pace), (80 * pace, 95 * pace)
     lost = np.zeros(len(base), bool)
     lost[slice(*gone)] = True
-    request = Request(span, style=style, besides=(marked,), unmade=(marked,))
+    request = FillRequest(span, style=style, besides=(marked,), unmade=(marked,))
     fills = []
     for value in (0.0, 1.0):
         spoilt = base.copy()
@@ -220,7 +220,7 @@ def test_a_fill_joins_a_span_that_is_marked_and_not_filled_yet() -> None:
     rng = np.random.default_rng(5)
     take = Take(np.clip(0.3 + np.cumsum(rng.normal(0, 0.01, (300, len(SHAPES))), axis=0), 0, 1), 30.0)
     beside = (130, 160)
-    made = refill(take, Request((100, 130), style="perform", besides=(beside,), unmade=(beside,)))[0].take
+    made = refill(take, FillRequest((100, 130), style="perform", besides=(beside,), unmade=(beside,)))[0].take
     step = np.abs(made.weights[130] - made.weights[129]).max()
     assert step < 0.1
     np.testing.assert_array_equal(made.weights[130:], take.weights[130:])

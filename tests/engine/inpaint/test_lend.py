@@ -7,7 +7,7 @@ from engine.inpaint.fill import fill, fill_spans
 from engine.inpaint.gap import gap_of, ground, statistics_of
 from engine.inpaint.infer import AT_REST, _above_rest, bundled
 from engine.inpaint.lend import DRAW_IN, costs, lent, trust
-from engine.inpaint.request import Request
+from engine.inpaint.request import FillRequest
 from engine.inpaint.seams import distance_frames, room_frames
 from engine.lab.corpus import Piece, rest_of
 from engine.take import SHAPES, Array, Take
@@ -123,7 +123,7 @@ def test_spans_still_to_be_made_lend_nothing() -> None:
     spoilt = weights.copy()
     spoilt[250:300] = 0.0
     spans = [(100, 180), (250, 300)]
-    first = [fill_spans(Take(w, 30.0), spans, Request((0, 0))).weights[100:180] for w in (weights, spoilt)]
+    first = [fill_spans(Take(w, 30.0), spans, FillRequest((0, 0))).weights[100:180] for w in (weights, spoilt)]
     np.testing.assert_array_equal(*first)
 
 

@@ -10,15 +10,32 @@ import numpy as np
 
 from engine import project
 from engine.controls import ALL_CONTROLS
-from engine.project import Contents, Edit, Marks, Media, Note, Pin, Project, Span
+from engine.project import Contents, Drawing, Edit, Marks, Media, Note, Pin, Project, Reply, Span, Verdict
+from engine.quality import Dismissal, FlagSettings
 from engine.take import SHAPES, Take
 
 MARKS = Marks(
     spans=(Span(3, 9), Span(0, 40, "lower", "lost")),
     pins=(Pin(5, {"jawOpen": 0.25, "mouthClose": 1 / 3}, 0, 12),),
-    notes=(Note(7, "Ana 顔", "2025-01-02T03:04:05+01:00", "the lips\n'stay' open"),),
+    notes=(
+        Note(7, "Ana 顔", "2025-01-02T03:04:05+01:00", "the lips\n'stay' open"),
+        Note(
+            *(9, "Ana", "2025-01-02T03:04:05Z", "<b>on</b> a range", 5, "lower"),
+            replies=(Reply("B", "2025-01-02T04:04:05Z", "why?"), Reply("Ana", "", "")),
+            resolved_by="B",
+            resolved_at="2025-01-03T03:04:05Z",
+            drawing=Drawing((((0.0, -0.25), (1 / 3, 0.5)), ((0.1, 0.1),)), (0.0, 4.0, 1.0, 0.0, 0.5)),
+        ),
+    ),
     media=(Media("audio", "sound/take.wav", "ab" * 32, -0.125),),
-    verdict="needs work",
+    verdicts=(
+        Verdict("Approved", "", "Ana", "2025-01-02T03:04:05Z"),
+        Verdict("Needs work", "the jaw: it pops", "B", ""),
+    ),
+    dismissals=(
+        Dismissal("open", 3, 8, 1 / 3, "The lips stay 2.1 mm apart.", "Ana", "2025-01-02T03:04:05Z", "a yawn"),
+    ),
+    flags=FlagSettings({"lost": False}, {"open": 3.5, "of a later Retake": 1.0}),
 )
 
 

@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 
 from engine import project
-from engine.formats.lock import FileLock
 from engine.project import Contents, DisplacedError, InUseError, Project, database
 from engine.take import SHAPES, Take
 from tests.engine.project.projects import an_edit, reopened, same
@@ -69,20 +68,6 @@ def test_a_project_that_was_replaced_can_be_saved_elsewhere(contents: Contents, 
     project.create(tmp_path / "b.retake", contents).close()
     opened.close()
     assert same(reopened(tmp_path / "b.retake"), contents)
-
-
-def test_a_project_that_was_merely_touched_or_renamed_back_is_written(contents: Contents, tmp_path: Path) -> None:
-    path = tmp_path / "a.retake"
-    opened = project.create(path, contents)
-    os.utime(path, (1.0, 1.0))  # a clock that was set back
-    opened.put(replace(contents, position=2))
-    path.rename(tmp_path / "b.retake")
-    with pytest.raises(DisplacedError, match="moved or deleted"):
-        opened.put(replace(contents, position=1))
-    (tmp_path / "b.retake").rename(path)
-    opened.put(replace(contents, position=1))
-    opened.close()
-    assert reopened(path).position == 1
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -149,64 +134,6 @@ def _is_open_elsewhere(path: Path) -> bool:
     except InUseError:
         return True
     return False
-
-
-def owned_elsewhere(lock: Path, host: str) -> None:
-    """Let a lock say that another computer has it, as after that one took it over."""
-    fields = dict(line.partition("=")[::2] for line in lock.read_text().splitlines())
-    fields |= {"host": host, "token": "f" * 32}
-    text = "".join(f"{name}={value}\n" if value else f"{name}\n" for name, value in fields.items())
-    (made := lock.with_suffix(".made")).write_text(text)
-    os.replace(made, lock)
-
-
-def test_a_lock_of_another_computer_counts_while_it_is_refreshed(
-    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "a.retake"
-    held = FileLock(path)
-    owned_elsewhere(lock := tmp_path / ".a.retake.lock", "other")
-    turns = iter(range(1, 10**6))
-    monkeypatch.setattr("engine.formats.lock.time.sleep", lambda _: os.utime(lock, (next(turns), next(turns))))
-    with pytest.raises(InUseError, match="in Retake on other"):
-        FileLock(path)
-    assert not held.held  # as its own computer would find if it slept: somebody else's name is in it
-    held.release()
-    assert lock.exists()  # and it is not removed
-
-
-def test_a_lock_that_another_computer_left_is_taken_over_after_a_lease(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path, now = tmp_path / "a.retake", [0.0]
-    monkeypatch.setattr("time.monotonic", lambda: now[0])
-    monkeypatch.setattr("engine.formats.lock.time.sleep", lambda seconds: now.__setitem__(0, now[0] + seconds))
-    left = FileLock(path)
-    left._lease._stop_heartbeat()
-    owned_elsewhere(tmp_path / ".a.retake.lock", "other")
-    os.utime(tmp_path / ".a.retake.lock", (9e9, 9e9))  # its clock is far ahead
-    taken = FileLock(path)
-    assert taken.held and not left.held
-    taken.release()
-
-
-def test_a_lock_without_a_name_as_a_power_cut_leaves_it_is_nobodys(tmp_path: Path) -> None:
-    (tmp_path / ".a.retake.lock").touch()
-    lock = FileLock(tmp_path / "a.retake")
-    assert lock.held
-    lock.release()
-    assert others(tmp_path) == []
-
-
-def test_who_lost_the_lock_while_asleep_writes_no_more(contents: Contents, tmp_path: Path) -> None:
-    path = tmp_path / "a.retake"
-    slept = project.create(path, contents)
-    owned_elsewhere(tmp_path / ".a.retake.lock", "other")
-    before = path.read_bytes()
-    with pytest.raises(DisplacedError, match="another computer meanwhile"):
-        slept.put(replace(contents, position=1))
-    slept.close()
-    assert path.read_bytes() == before and (tmp_path / ".a.retake.lock").exists()
 
 
 # --- kills

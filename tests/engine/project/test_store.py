@@ -17,7 +17,7 @@ from engine.controls import ALL_CONTROLS
 from engine.errors import EngineError, FormatError
 from engine.formats import livelink
 from engine.lab.performer import demo
-from engine.project import Contents, Edit, InUseError, Project
+from engine.project import Contents, Edit, InUseError, Project, Verdict
 from engine.take import SHAPES, Take
 from tests.engine.project.projects import MARKS, an_edit, reopened, same, sql
 
@@ -44,7 +44,7 @@ def test_a_walk_of_edits_undone_steps_and_marks_is_always_what_a_list_would_hold
         elif turn < 0.8:
             plain = replace(plain, position=int(rng.integers(0, len(plain.edits) + 1)))
         else:
-            plain = replace(plain, marks=replace(MARKS, verdict=f"{step}", spans=MARKS.spans[: step % 3]))
+            plain = replace(plain, marks=replace(MARKS, verdicts=(Verdict(f"{step}"),), spans=MARKS.spans[: step % 3]))
         opened.put(plain)
         if rng.random() < 0.3:
             opened.close()
@@ -158,7 +158,7 @@ def left_by_a_kill(contents: Contents, folder: Path) -> Path:
 @pytest.mark.parametrize("how", ["create", "save_as"])
 def test_a_save_over_a_killed_project_is_not_undone_by_its_log(contents: Contents, tmp_path: Path, how: str) -> None:
     path = left_by_a_kill(contents, tmp_path)
-    new = replace(contents, position=2, marks=replace(MARKS, verdict="approved"))
+    new = replace(contents, position=2, marks=replace(MARKS, verdicts=(Verdict("Approved"),)))
     if how == "create":
         project.create(path, new).close()
     else:
@@ -292,20 +292,3 @@ def test_a_project_is_read_beside_the_program_that_has_it_open_and_left_as_it_wa
     alive.put(contents)
     alive.close()
     assert same(reopened(path), contents)
-
-
-def test_a_project_that_is_written_while_it_is_read_is_read_whole(
-    contents: Contents, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path, copied = tmp_path / "a.retake", shutil.copyfile
-    alive = project.create(path, contents)
-    turns = iter(range(3))
-
-    def written_meanwhile(source: Path, target: Path) -> None:
-        copied(source, target)
-        if str(source).endswith(".retake") and (turn := next(turns, None)) is not None:
-            alive.put(replace(alive.contents, position=turn))
-
-    monkeypatch.setattr("engine.project.database.shutil.copyfile", written_meanwhile)
-    assert Project.open(path, read_only=True).contents.position == 2
-    alive.close()

@@ -8,9 +8,10 @@ import numpy as np
 
 from engine.formats import read_take
 from engine.lab.performer import demo
-from engine.quality import flags_of, seen_of
+from engine.project import Drawing, Note, Reply, Verdict
+from engine.quality import Dismissal, Flag, flags_of, seen_of
 from engine.review.changes import Edited, compare
-from engine.review.report import CHART_WIDTH, Entry, Remark, Review, html, index
+from engine.review.report import CHART_WIDTH, Entry, Pictures, Review, html, index
 from engine.take import SHAPE_INDEX, Take
 
 DEMO = read_take(demo.BUNDLED)
@@ -51,31 +52,49 @@ def review(**words: object) -> Review:
 
 def test_a_report_tells_changes_flags_notes_verdict_and_edits() -> None:
     found = review(
-        verdict="needs work: the jaw",
-        remarks=(Remark(61, "Ada", "2026-01-02", "too wide"),),
+        verdicts=(Verdict("Approved", "", "Bob", "2026-01-01T10:00:00+00:00"), Verdict("Needs work", "the jaw", "Ada")),
+        notes=(Note(61, "Ada", "2026-01-02T03:04:05+00:00", "too wide", 9, "lower", (Reply("Bob", "", "is it?"),)),),
         edits=(Edited("Drag", 60, 80),),
     )
     text = parsed(html(found)).text
-    for expected in ("needs work: the jaw", "too wide", "Ada", "Drag", "frames 60 to 79", "lips apart", "a spike"):
+    for expected in (
+        *("✗ Needs work: the jaw", "too wide", "Ada, 02 Jan 2026, 03:04", "Drag", "frames 60 to 79", "lips apart"),
+        *("a spike", "frames 61 to 69, Mouth and jaw", "is it?", "Open", "Approved", "Bob", "01 Jan 2026, 10:00"),
+    ):
         assert expected in text
     assert f"{len(DEMO) - 21}" in text  # identical frames
 
 
 def test_text_of_files_notes_and_edits_is_never_markup() -> None:
+    who = Dismissal("spike", 0, 1, 1.0, HOSTILE, HOSTILE, HOSTILE, HOSTILE)
     found = review(
-        name=HOSTILE, verdict=HOSTILE, remarks=(Remark(1, HOSTILE, HOSTILE, HOSTILE),), edits=(Edited(HOSTILE, 60, 80),)
+        name=HOSTILE,
+        verdicts=(Verdict(HOSTILE, HOSTILE, HOSTILE, HOSTILE),),
+        notes=(Note(1, HOSTILE, HOSTILE, HOSTILE, 1, HOSTILE, (Reply(*[HOSTILE] * 3),), HOSTILE, HOSTILE),),
+        edits=(Edited(HOSTILE, 60, 80),),
+        dismissed=((Flag("spike", 0, 1, 1.0, HOSTILE), who),),
     )
     plain, hostile = parsed(html(review())), parsed(html(found))
     assert not [tag for tag, _ in hostile.tags if tag in ("img", "script")]
-    assert {tag for tag, _ in hostile.tags} <= {tag for tag, _ in plain.tags} | {"blockquote", "article"}
+    assert {tag for tag, _ in hostile.tags} <= {tag for tag, _ in plain.tags} | {
+        "blockquote",
+        "article",
+        "ol",
+        "li",
+        "span",
+    }
     assert HOSTILE in hostile.text
 
 
 def test_nothing_is_fetched_from_elsewhere() -> None:
-    text = html(review(), draw=lambda change: b"\x89PNG")
+    done: list[tuple[int, int]] = []
+    found = review(notes=(Note(1, "A", "", "x", drawing=Drawing((((0.0, 0.0),),))), Note(2, "A", "", "y")))
+    drawn = Pictures(lambda change: b"\x89PNG", lambda note: b"\x89PNG", 10.0, lambda *so_far: done.append(so_far))
+    text = html(found, pictures=drawn)
+    assert done == [(1, 4), (2, 4), (3, 4), (4, 4)]
     assert not re.findall(r'(?:src|href)="(?!data:)', text)
     assert "<script" not in text and "default-src 'none'" in text
-    assert text.count("data:image/png;base64,") == 2
+    assert text.count("data:image/png;base64,") == 3
 
 
 def test_flags_that_came_and_went_are_told_apart() -> None:

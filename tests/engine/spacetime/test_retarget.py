@@ -4,47 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from engine.character import Character, bundled
 from engine.errors import EditError
-from engine.formats import read_take
-from engine.formats.capture import Markers
-from engine.lab.performer import demo
-from engine.spacetime.align import HeadMotion
+from engine.formats.markers.capture import Markers
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import standard
 from engine.spacetime.matching import Matching
 from engine.spacetime.retarget import correspond, match, retarget
-from engine.spacetime.source import Source, bridge, from_markers, from_take, shown
+from engine.spacetime.source import Source, from_markers, from_take
 from engine.take import SHAPE_INDEX, Array, Take
+from tests.engine.spacetime.captures import apart, captured
 
 FREE = Matching(alpha=1e-7, beta=0.1, closure=0.0, bounds=None)
-
-
-@pytest.fixture(scope="module")
-def take() -> Take:
-    whole = read_take(demo.BUNDLED)
-    return replace(whole, weights=shown(whole.weights[:150]), lost=whole.lost[:150], rotations=whole.rotations[:150])
-
-
-@pytest.fixture(scope="module")
-def played(take: Take) -> Source:
-    return from_take(take, bundled())
-
-
-def _captured(played: Source, *, turned: bool = True) -> Markers:
-    """The take as a motion capture: neutral in frame 0, the head moving."""
-    face = played.neutral + played.displacements
-    face[0] = played.neutral
-    time = np.arange(len(face))[:, None] / 30
-    angles = 0.3 * np.sin(time * [1.0, 0.7, 0.4]) * turned
-    head = HeadMotion(Rotation.from_euler("YXZ", angles).as_matrix(), 40 * np.sin(time * [0.5, 0.6, 0.7]) * turned)
-    return Markers(head.apply(face), played.names, 30.0, "capture")
-
-
-def _apart(a: Array, b: Array) -> float:
-    return float(np.sqrt(((a - b) ** 2).mean()))
 
 
 def _markers_of(weights: Array) -> Array:
@@ -72,40 +44,21 @@ def test_a_larger_head_gets_the_same_weights(played: Source) -> None:
     np.testing.assert_allclose(larger.basis, pair.basis, atol=1e-3)
 
 
-def test_head_motion_is_taken_out_and_given_back(played: Source) -> None:
-    turned, still = from_markers(_captured(played)), from_markers(_captured(played, turned=False))
-    assert turned.head is not None
-    again = turned.head.apply(turned.neutral + turned.displacements)
-    assert _apart(again, _captured(played).positions) < 0.2  # the capture's jitter is smoothed, its motion is not
-    assert _apart(turned.displacements, still.displacements) < 1e-6
-    assert np.abs(turned.take.rotations[:, 0]).max() == pytest.approx(0.3, abs=0.05)
-
-
 def test_a_capture_moves_the_face_as_the_take_did(take: Take, played: Source) -> None:
-    found = retarget(from_markers(_captured(played)), bundled())
-    rest = _apart(_markers_of(take.weights), 0 * played.displacements)
-    assert _apart(_markers_of(found.weights), _markers_of(take.weights)) < 0.35 * rest
+    found = retarget(from_markers(captured(played)), bundled())
+    rest = apart(_markers_of(take.weights), 0 * played.displacements)
+    assert apart(_markers_of(found.weights), _markers_of(take.weights)) < 0.35 * rest
 
 
 def test_gaps_are_bridged(played: Source) -> None:
-    markers = _captured(played)
+    markers = captured(played)
     holes = markers.positions.copy()
     hidden = np.random.default_rng(0).random(holes.shape[:2]) < 0.1
     hidden[0] = False
     holes[hidden] = np.nan
     whole = retarget(from_markers(markers), bundled()).weights
     found = retarget(from_markers(replace(markers, positions=holes)), bundled()).weights
-    assert _apart(_markers_of(found), _markers_of(whole)) < 0.3
-
-
-def test_steps_into_a_gap_count_less_the_longer_it_is() -> None:
-    motion = np.arange(10.0)[:, None, None] * np.ones((10, 3, 3))
-    motion[4, 0] = motion[3:7, 1] = motion[:2, 2] = motion[8:, 2] = np.nan
-    filled, believed = bridge(motion)
-    np.testing.assert_allclose(filled[:, :2], np.arange(10.0)[:, None, None] * np.ones((1, 2, 3)))
-    np.testing.assert_allclose(believed[:, 0], [1, 1, 1, 0.25, 0.25, 1, 1, 1, 1])
-    np.testing.assert_allclose(believed[:, 1], [1, 1, 0.04, 0.04, 0.04, 0.04, 0.04, 1, 1])
-    np.testing.assert_allclose(believed[:, 2], [0, 0, 1, 1, 1, 1, 1, 0, 0])
+    assert apart(_markers_of(found), _markers_of(whole)) < 0.3
 
 
 def test_eyes_that_close_in_the_source_close_however_strong_the_prior() -> None:
@@ -114,12 +67,12 @@ def test_eyes_that_close_in_the_source_close_however_strong_the_prior() -> None:
     lids = [SHAPE_INDEX["eyeBlinkLeft"], SHAPE_INDEX["eyeBlinkRight"]]
     blink[18:24, lids] = np.array([0.4, 0.9, 1.0, 1.0, 0.7, 0.3])[:, None]
     source, gaps = from_take(Take(blink, 30.0), bundled()), Gaps(bundled())
-    apart = {
+    opened = {
         closure: gaps.sizes(retarget(source, bundled(), matching=Matching(alpha=0.5, closure=closure)).weights)
         for closure in (0.0, 30.0)
     }
-    assert apart[0.0][20:22, 3:].min() > 3
-    assert apart[30.0][20:22, 3:].max() < 2  # where a lid counts as closed
+    assert opened[0.0][20:22, 3:].min() > 3
+    assert opened[30.0][20:22, 3:].max() < 2  # where a lid counts as closed
 
 
 def test_a_part_is_solved_as_a_take_of_its_own(played: Source) -> None:
@@ -149,12 +102,7 @@ def _doubled(markers: Markers) -> Markers:
 )
 def test_captures_that_cannot_be_used_say_why(played: Source, change: object, says: str) -> None:
     with pytest.raises(EditError, match=says):
-        retarget(from_markers(change(_captured(played))), bundled())  # type: ignore[operator]
-
-
-def test_a_neutral_frame_outside_the_capture_is_refused(played: Source) -> None:
-    with pytest.raises(EditError, match="Frame 500 is not within the capture"):
-        from_markers(_captured(played), neutral_frame=500)
+        retarget(from_markers(change(captured(played))), bundled())  # type: ignore[operator]
 
 
 def test_a_jaw_at_its_bound_is_solved_around_not_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:

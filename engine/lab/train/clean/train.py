@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
+import copy
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -12,16 +11,19 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from engine.clean.network import CleanConfig, CleanNetwork, State, config_of, run
+from engine.clean.network import CleanConfig, CleanNetwork, config_of, run
+from engine.clean.network import State as CleanState
 from engine.errors import EngineError
 from engine.lab.corpus import Piece, recorded_seconds, split
+from engine.lab.reporting import Report
+from engine.lab.train import loop
 from engine.lab.train.clean.batches import Batch, Settings, make_batch, training_pieces
 from engine.lab.train.clean.tuning import train_rivals
-from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.lab.train.loop import Parts, Schedule, State, identity
+from engine.models.checkpoint import MODELS, Card, commit, save_card, save_model
 from engine.models.distances import Distances, six_distances
 from engine.take import Array
 
-Report = Callable[[str], None]
 MM_PER_CM = 10.0  # distances count in cm, so that they weigh like weights
 
 
@@ -44,19 +46,18 @@ def losses(made: Tensor, batch: Batch, before: Tensor, distances: Distances, set
 
 
 class Trainer:
-    """The training loop: streams of several chunks, one step of Adam a chunk."""
+    """Streams of several chunks, one step of Adam a chunk; a unit of the loop is an epoch of such streams."""
 
-    def __init__(self, training: list[Array], validation: list[Array], settings: Settings, partial: Path) -> None:
+    def __init__(self, training: list[Array], validation: list[Array], settings: Settings) -> None:
         torch.manual_seed(settings.seed)
-        self._settings, self._training, self._partial = settings, training, partial
+        self._settings, self._training = settings, training
         self._rng = np.random.default_rng(settings.seed)
         self._distances = six_distances(unit_mm=MM_PER_CM)
         self._valid = make_batch(validation, settings, np.random.default_rng(1))
         self.network = CleanNetwork(CleanConfig())
         self._optimizer = torch.optim.Adam(self.network.parameters(), lr=settings.rate)
         self._start_as_ridge()
-        self._epoch = 0
-        self._resume()
+        self._best, self._best_terms = copy.deepcopy(self.network), self.validate()
 
     def _start_as_ridge(self) -> None:
         """Begin the restoring map as the ridge regression of what the tracker took away on what it shows."""
@@ -71,26 +72,22 @@ class Trainer:
             self.network.restore.weight.copy_(slope)
             self.network.restore.bias.copy_(gap - slope @ centre)
 
-    def run(self, report: Report) -> dict[str, float]:
-        """Train for the settings' epochs; returns validation terms of the best state, which the network then holds."""
-        settings, began = self._settings, time.monotonic()
-        best, best_state = self.validate(), self._copy()
-        for epoch in range(self._epoch, settings.epochs):
-            share = epoch / settings.epochs
-            for group in self._optimizer.param_groups:
-                group["lr"] = settings.rate * (0.5 + 0.5 * np.cos(np.pi * share)) * min(1.0, 0.3 + epoch / 4)
-            chunk = settings.first_chunk if share < 2 / 3 else settings.chunk
-            learnt = [
-                self._learn(make_batch(self._training, settings, self._rng), chunk) for _ in range(settings.batches)
-            ]
-            terms = self.validate() | {"training_mse": float(np.mean(learnt))}
-            if terms["mse"] < best["mse"]:
-                best, best_state = terms, self._copy()
-            self._save(epoch + 1)
-            shown = ", ".join(f"{name} {value:.6f}" for name, value in terms.items())
-            report(f"clean {epoch + 1}/{settings.epochs}: {shown} ({time.monotonic() - began:.0f} s)")
-        self.network.load_state_dict(best_state)
-        return best
+    def advance(self, unit: int) -> dict[str, float]:
+        """Train one epoch and keep the network where it is the best yet; returns its validation terms."""
+        settings, share = self._settings, unit / self._settings.epochs
+        for group in self._optimizer.param_groups:
+            group["lr"] = settings.rate * (0.5 + 0.5 * np.cos(np.pi * share)) * min(1.0, 0.3 + unit / 4)
+        chunk = settings.first_chunk if share < 2 / 3 else settings.chunk
+        learnt = [self._learn(make_batch(self._training, settings, self._rng), chunk) for _ in range(settings.batches)]
+        terms = self.validate() | {"training_mse": float(np.mean(learnt))}
+        if terms["mse"] < self._best_terms["mse"]:
+            self._best_terms = terms
+            self._best.load_state_dict(self.network.state_dict())
+        return terms
+
+    def best(self) -> tuple[CleanNetwork, dict[str, float]]:
+        """Return the network as it was in its best epoch, and its validation terms."""
+        return self._best, self._best_terms
 
     def _learn(self, batch: Batch, length: int) -> float:
         """Take one step of Adam for each chunk; returns the mean squared error on the way."""
@@ -109,7 +106,7 @@ class Trainer:
             mse += float(terms["mse"].detach()) * length / batch.truth.shape[1]
         return mse
 
-    def _forward(self, chunk: Batch, state: State) -> tuple[Tensor, State]:
+    def _forward(self, chunk: Batch, state: CleanState) -> tuple[Tensor, CleanState]:
         return run(self.network, chunk.seen, chunk.present, chunk.step_s, state, dropout=self._settings.dropout)
 
     def validate(self) -> dict[str, float]:
@@ -126,18 +123,18 @@ class Trainer:
                 terms[name] = ((curves - batch.truth).square() * kept).sum() / kept.sum() / curves.shape[2]
         return {name: float(value) for name, value in terms.items()}
 
-    def _copy(self) -> dict[str, Tensor]:
-        return {name: value.clone() for name, value in self.network.state_dict().items()}
+    def _parts(self) -> Parts:
+        modules = {"network": self.network, "best": self._best}
+        return Parts(modules, {"adam": self._optimizer}, {"batches": self._rng})
 
-    def _save(self, epoch: int) -> None:
-        save_model(self._partial, self._copy(), kind="clean", config=config_of(self.network) | {"epoch": epoch})
+    def state(self) -> State:
+        """Return the network, the best yet with its terms, Adam's averages and where the random numbers stand."""
+        return State(self._parts().tensors(), {"best": self._best_terms})
 
-    def _resume(self) -> None:
-        """Go on where a run that was stopped left off; Adam's averages are regained within an epoch."""
-        if self._partial.exists():
-            tensors, config = load_model(self._partial, kind="clean")
-            self.network.load_state_dict(tensors)
-            self._epoch = int(config["epoch"])
+    def restore(self, state: State) -> None:
+        """Take over such a state."""
+        self._parts().restore(state.tensors)
+        self._best_terms = dict(state.notes["best"])
 
 
 def _chunks(batch: Batch, length: int) -> list[Batch]:
@@ -154,11 +151,15 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
     settings = settings or Settings()
     torch.set_num_threads(1)  # the steps are small: a second thread waits more than it works
     training, validation, _ = split(data)
-    partial = out / "clean.partial.safetensors"
-    trainer = Trainer(training_pieces(training, settings), [piece.weights for piece in validation], settings, partial)
-    figures = trainer.run(report)
+    pieces, partial = training_pieces(training, settings), out / "clean.partial.safetensors"
+    trainer = Trainer(pieces, [piece.weights for piece in validation], settings)
+    schedule = Schedule(
+        settings.epochs, partial, identity(settings, pieces), label=lambda done: f"clean {done}/{settings.epochs}"
+    )
+    loop.train(trainer, schedule, report)
+    network, figures = trainer.best()
     path = out / "clean.safetensors"
-    save_model(path, trainer.network.state_dict(), kind="clean", config=config_of(trainer.network))
+    save_model(path, network.state_dict(), kind="clean", config=config_of(network))
     save_card(path, _card(training, settings, figures))
     partial.unlink(missing_ok=True)
     _train_rivals(data, out, report)

@@ -13,14 +13,14 @@ import torch
 
 from engine.errors import EngineError
 from engine.lab.corpus import split
-from engine.lab.evaluate.filters import Filter, Kalman, OneEuro, savgol
+from engine.lab.evaluate.clean.baselines import Filter, Kalman, OneEuro, savgol
+from engine.lab.reporting import Report
 from engine.lab.train.clean.batches import Settings, make_batch, training_pieces
 from engine.lab.train.clean.material import CHANGING, Spoilt, spoil
 from engine.lab.train.clean.rivals import Estimate, FullyConnected, Rival, Trees, features, targets
 from engine.models.checkpoint import MODELS, load_model, save_model
 from engine.take import MODEL_FPS, Array
 
-Report = Callable[[str], None]
 FILE = "clean_rivals.safetensors"
 ORDERS = (1, 2)
 LEAKS = (0.3, 0.5, 0.7, 0.9, 0.97)  # the paper's are 0.9 and 0.97

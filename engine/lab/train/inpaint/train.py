@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -17,13 +16,17 @@ from engine.inpaint.infer import Filler, save_filler
 from engine.inpaint.lend import LENDERS
 from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, noise_curves, see
 from engine.lab.corpus import Piece, recorded_seconds, split
+from engine.lab.reporting import Report
+from engine.lab.train import loop
 from engine.lab.train.inpaint.losses import Batch, Shares, fill_losses, scatter, spectrum_gap
 from engine.lab.train.inpaint.material import Help, Performance, draw, listened, performances, random_gap
-from engine.models.checkpoint import MODELS, Card, commit, load_model, save_card, save_model
+from engine.lab.train.inpaint.validate import validation_figures
+from engine.lab.train.loop import Parts, Schedule, State, identity
+from engine.models.checkpoint import MODELS, Card, commit, save_card
 from engine.models.distances import six_distances
 from engine.models.threads import one_thread
 
-Report = Callable[[str], None]
+EVERY = 100  # steps from one checkpoint to the next
 SHARED = "inpaint_shared.partial.safetensors"  # where both ways part
 
 
@@ -69,7 +72,7 @@ def make_batches(
 
 
 class Trainer:
-    """One way of training, with or without an adversary, resumable after any `save`."""
+    """One way of training, with or without an adversary; a unit of the loop is a step of the generator."""
 
     def __init__(self, material: Sequence[Performance], settings: Settings, *, adversary: bool) -> None:
         torch.manual_seed(settings.seed)
@@ -88,7 +91,6 @@ class Trainer:
         groups: list[dict[str, Any]] = [{"params": rest}, {"params": self.generator.filter.parameters()}]
         self._make = torch.optim.Adam(groups, lr=settings.rate)
         self._judge = torch.optim.Adam(self.discriminator.parameters(), lr=settings.rate, betas=(0.5, 0.9))
-        self.step = 0
 
     def _face_scale(self) -> Tensor:
         sample = torch.tensor(np.concatenate([one.weights for one in self._material[::5]]), dtype=torch.float32)
@@ -98,14 +100,14 @@ class Trainer:
         """Return what the discriminator is fed, in units of its own spread."""
         return see(weights, self._distances) / self.discriminator.scale
 
-    def advance(self) -> dict[str, float]:
-        """Take one step; returns every loss term by name."""
-        settings, part = self.settings, self.step >= self.settings.shared_steps
+    def advance(self, unit: int) -> dict[str, float]:
+        """Take one step, which depends on the settings and its number alone; returns every loss term by name."""
+        settings, part = self.settings, unit >= self.settings.shared_steps
         self.generator.filter.requires_grad_(part)
-        rng = np.random.default_rng([settings.seed, self.step])
-        torch.manual_seed(settings.seed * 1_000_003 + self.step)
+        rng = np.random.default_rng([settings.seed, unit])
+        torch.manual_seed(settings.seed * 1_000_003 + unit)
         against = part and self._adversary
-        self._pace(part)
+        self._pace(unit, part=part)
         size = settings.batch // 2 if against else settings.batch
         ranks = rng.choice(LENDERS, 2, replace=False).tolist() if against else (None,)
         batches = make_batches(self._material, self.statistics, settings, rng, size=size, ranks=ranks)
@@ -120,12 +122,11 @@ class Trainer:
         torch.nn.utils.clip_grad_norm_(self.generator.parameters(), 1.0)
         self._make.step()
         self.kept.update_parameters(self.generator)
-        self.step += 1
         return {name: float(term.detach()) for name, term in terms.items()}
 
-    def _pace(self, part: bool) -> None:
+    def _pace(self, step: int, *, part: bool) -> None:
         """Halve the rate once the ways part and let it fall to a tenth of that by the end."""
-        done = (self.step - self.settings.shared_steps) / max(1, self.settings.parted_steps)
+        done = (step - self.settings.shared_steps) / max(1, self.settings.parted_steps)
         rate = self.settings.rate * (1 - 0.9 * done if part else 2.0)
         for group, pace in zip(self._make.param_groups, (1.0, self.settings.filter_pace), strict=True):
             group["lr"] = rate * pace
@@ -181,33 +182,17 @@ class Trainer:
         generator.load_state_dict(self.kept.module.state_dict())
         return Filler(generator, self.statistics)
 
-    def _parts(self) -> dict[str, Any]:
-        return {"generator": self.generator, "kept": self.kept, "discriminator": self.discriminator}
+    def _parts(self) -> Parts:
+        modules = {"generator": self.generator, "kept": self.kept, "discriminator": self.discriminator}
+        return Parts(modules, {"make": self._make, "judge": self._judge})
 
-    def save(self, path: Path) -> None:
-        """Write all that `load` needs to go on as if nothing had happened."""
-        tensors: dict[str, Tensor] = {}
-        for name, module in self._parts().items():
-            tensors |= {f"{name}/{key}": value.clone() for key, value in module.state_dict().items()}
-        for name, optimizer in (("make", self._make), ("judge", self._judge)):
-            for index, state in optimizer.state_dict()["state"].items():
-                tensors |= {f"{name}/{index}/{key}": torch.as_tensor(value) for key, value in state.items()}
-        save_model(path, tensors, kind="inpaint-partial", config={"step": self.step, "settings": asdict(self.settings)})
+    def state(self) -> State:
+        """Return both networks, the averaged one and what Adam knows of them."""
+        return State(self._parts().tensors())
 
-    def load(self, path: Path) -> None:
-        """Go on from a saved state."""
-        tensors, config = load_model(path, kind="inpaint-partial")
-        for name, module in self._parts().items():
-            prefix = f"{name}/"
-            module.load_state_dict({k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)})
-        for name, optimizer in (("make", self._make), ("judge", self._judge)):
-            state: dict[int, dict[str, Tensor]] = {}
-            for key, value in tensors.items():
-                if key.startswith(f"{name}/"):
-                    _, index, field_name = key.split("/")
-                    state.setdefault(int(index), {})[field_name] = value
-            optimizer.load_state_dict({"state": state, "param_groups": optimizer.state_dict()["param_groups"]})
-        self.step = int(config["step"])
+    def restore(self, state: State) -> None:
+        """Take over such a state."""
+        self._parts().restore(state.tensors)
 
 
 def _means(losses: dict[str, Tensor]) -> dict[str, Tensor]:
@@ -219,8 +204,6 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
 
     Stop it at any time: it goes on from the last hundred steps. Raises `EngineError` where there are no takes.
     """
-    from engine.lab.train.inpaint.validate import validation_figures
-
     settings = settings or Settings()
     training, validation, _ = split(data)
     material = performances(training, settings.help, np.random.default_rng(settings.seed), listened(data))
@@ -228,7 +211,7 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
     for name, adversary in (("inpaint", True), ("inpaint_feedforward", False)):
         trainer = Trainer(material, settings, adversary=adversary)
         with one_thread():
-            seconds = _run(trainer, out, name, report)
+            seconds = loop.train(trainer, _schedule(name, trainer, material, out), report)
         figures[name] = validation_figures(trainer.filler(), validation, training)
         report(f"{name}: {figures[name]}")
         save_filler(out / f"{name}.safetensors", trainer.filler())
@@ -238,23 +221,19 @@ def train(data: Path, out: Path = MODELS, settings: Settings | None = None, repo
     return figures
 
 
-def _run(trainer: Trainer, out: Path, name: str, report: Report) -> float:
-    """Train to the end from wherever it stopped; returns the seconds that this run took."""
-    settings, shared, partial = trainer.settings, out / SHARED, out / f"{name}.partial.safetensors"
-    for earlier in (partial, shared):
-        if earlier.exists():
-            trainer.load(earlier)
-            break
-    began, last, sums = time.monotonic(), settings.shared_steps + settings.parted_steps, dict[str, float]()
-    while trainer.step < last:
-        for term, value in trainer.advance().items():
-            sums[term] = sums.get(term, 0.0) + value / 100
-        if trainer.step % 100 == 0 or trainer.step == last:
-            shown = ", ".join(f"{term} {value:.4f}" for term, value in sums.items())
-            report(f"{name} {trainer.step}/{last}: {shown} ({time.monotonic() - began:.0f} s)")
-            sums = {}
-            trainer.save(shared if trainer.step <= settings.shared_steps else partial)
-    return time.monotonic() - began
+def _schedule(name: str, trainer: Trainer, material: Sequence[Performance], out: Path) -> Schedule:
+    """Return how one way is trained: the steps before the ways part have a checkpoint in common."""
+    settings = trainer.settings
+    last = settings.shared_steps + settings.parted_steps
+    return Schedule(
+        last,
+        out / f"{name}.partial.safetensors",
+        identity(settings, (one.weights for one in material)),
+        label=lambda done: f"{name} {done}/{last}",
+        every=EVERY,
+        shared=out / SHARED,
+        shared_units=settings.shared_steps,
+    )
 
 
 def _card(name: str, training: Sequence[Piece], settings: Settings, metrics: dict[str, Any], seconds: float) -> Card:

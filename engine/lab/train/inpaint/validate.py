@@ -11,7 +11,7 @@ from engine.inpaint.infer import Filler
 from engine.inpaint.regions import REGIONS
 from engine.inpaint.seams import bridged
 from engine.lab.corpus import Piece, rest_of
-from engine.lab.evaluate.motion import npss
+from engine.lab.evaluate.inpaint.motion import npss
 from engine.take import MODEL_FPS, Array, Mask
 
 SPANS_S = (0.2, 0.5, 1.0, 2.0, 3.0)

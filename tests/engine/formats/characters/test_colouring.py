@@ -4,7 +4,7 @@ import numpy as np
 
 from engine.character import bundled
 from engine.formats.characters.colouring import LASH, MOUTH, PUPIL, SKIN, TOOTH, WHITE, colours_of
-from engine.manifold.drive import parts_of
+from engine.mesh import parts_of
 
 POINTS, TRIANGLES = bundled().neutral.astype(np.float64), bundled().triangles
 

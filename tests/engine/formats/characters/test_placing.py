@@ -8,8 +8,8 @@ import pytest
 
 from engine.character import Character, bundled
 from engine.errors import EditError
-from engine.formats import markers_layout
 from engine.formats.characters.placing import place_rest
+from engine.formats.markers import layout as markers_layout
 from engine.spacetime.layout import standard
 
 BY_HAND = ("nose_tip", "chin", "brow_outer_left", "mouth_right")

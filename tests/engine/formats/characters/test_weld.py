@@ -14,7 +14,7 @@ from engine.formats.characters.assemble import assemble
 from engine.formats.characters.colouring import colours_of
 from engine.formats.characters.raw import RawCharacter
 from engine.formats.characters.weld import welded
-from engine.manifold.drive import parts_of
+from engine.mesh import parts_of
 from engine.take import SHAPES
 
 

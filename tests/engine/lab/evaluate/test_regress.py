@@ -8,7 +8,7 @@ import pytest
 
 from engine.controls import measure
 from engine.lab.corpus import Piece
-from engine.lab.evaluate import regress
+from engine.lab.evaluate import regress, regress_figures
 from engine.lab.performer import demo
 from engine.lab.performer.corpus import synthetic_performances
 from engine.regress.areas import AREAS
@@ -53,7 +53,7 @@ def test_any_folder_of_takes_can_be_measured(tmp_path: Path) -> None:
 def test_figures_are_drawn(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     shutil.copy(demo.BUNDLED, tmp_path / "someone.csv")
-    drawn = regress.figures(tmp_path, tmp_path, lambda line: None)
+    drawn = regress_figures.draw(tmp_path, tmp_path, lambda line: None)
     assert len(drawn) == 3 and all(path.stat().st_size > 10_000 for path in drawn)
 
 

@@ -1,0 +1,1 @@
+"""What every format rests on: whole writes, locks, budgets, and text and arrays of unknown origin."""

@@ -1,0 +1,1 @@
+"""Cleaning against filters and memoryless learners."""

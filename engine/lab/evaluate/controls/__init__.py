@@ -1,0 +1,1 @@
+"""A whole take from its control curves alone."""

@@ -1,0 +1,1 @@
+"""Edits that a person would make, asked for and reached."""

@@ -1,0 +1,1 @@
+"""Flags against planted faults."""

@@ -1,0 +1,1 @@
+"""Retargeting from labelled frames, and driving a mesh by points."""

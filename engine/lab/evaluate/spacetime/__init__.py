@@ -1,0 +1,1 @@
+"""Retargeting to a second head and back."""
