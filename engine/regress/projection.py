@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from engine.controls import ALL_INDEX
 from engine.extended import Columns, FaceMeasurer, Gauges
-from engine.regress.boxed import Boxes, nearest
+from engine.regress.boxed import Boxes, nearest, unheld
 from engine.take import Array, Mask
 
 _LIPS = ALL_INDEX["lips_vertical"]  # lids have too few shapes to meet point on point, and would go wide while shut
@@ -49,7 +51,7 @@ def project(
     hold: Mask,
     covariance: Array,
     measurer: FaceMeasurer,
-    rounds: int = STEPS.rounds,
+    roughly: bool = False,
 ) -> Array:
     """Return weights, (frames, 52), near `weights` whose controls reach `asked`, (frames, columns), where `hold` says so.
 
@@ -61,7 +63,7 @@ def project(
     Parameters
     ----------
     covariance : (52, 52), zero in the rows and columns of weights that shall not move
-    rounds : of steps, at most
+    roughly : whether the first step will do, cut off at the bounds
     """
     made, shapes = np.array(weights), np.flatnonzero(covariance.any(axis=0))
     search = _Search(weights[:, shapes], covariance[np.ix_(shapes, shapes)])
@@ -69,7 +71,11 @@ def project(
     active = np.flatnonzero(hold.any(axis=1))
     vectors, miss = goal.missing(made[active], active)
     far = np.abs(miss).max(axis=1, initial=0.0) > STEPS.met_mm
-    for _ in range(rounds):
+    if roughly:
+        slope = goal.slopes(vectors, made[active], active)
+        made[np.ix_(active, shapes)] = search.rough(active, slope, miss)
+        return made
+    for _ in range(STEPS.rounds):
         active, vectors, miss = active[far], vectors[far], miss[far]
         if not len(active):
             break
@@ -97,7 +103,7 @@ class _Search:
 
     def __init__(self, start: Array, covariance: Array) -> None:
         self._boxes = Boxes(start, np.minimum(start, 0.0), np.maximum(start, 1.0))
-        self._covariance, self._precision = covariance, np.linalg.inv(covariance)
+        self._covariance, self._precision = covariance, _inverse(covariance.tobytes())
         self._sides = np.zeros_like(start)
         self._share = np.ones(len(start))
         self._cost = np.zeros(len(start))
@@ -112,6 +118,12 @@ class _Search:
         self._sides[rows] = sides
         return np.asarray(self._share[rows, None] * (found - at))
 
+    def rough(self, rows: Columns, slope: Array, miss: Array) -> Array:
+        """Return weights, (rows, shapes), that the slopes at the start send there, whatever bounds stop."""
+        boxes = self._boxes.rows(rows)
+        goals = miss + (slope @ boxes.start[..., None])[..., 0]
+        return unheld(boxes, slope, goals, covariance=self._covariance, softness=STEPS.soft_mm2)
+
     def judge(self, rows: Columns, tried: Array, miss: Array, left: Array) -> Mask:
         """Return which frames came nearer with the weights they tried; the others' next steps are shorter."""
         away = tried - self._boxes.start[rows]
@@ -124,6 +136,13 @@ class _Search:
             nearer, np.minimum(1.0, self._share[rows] * STEPS.longer), self._share[rows] * STEPS.shorter
         )
         return nearer
+
+
+@lru_cache(maxsize=16)
+def _inverse(covariance: bytes) -> Array:
+    """Return the inverse of a covariance, which stays the same from drag to drag."""
+    values = np.frombuffer(covariance)
+    return np.linalg.inv(values.reshape(math.isqrt(len(values)), -1))
 
 
 class _Goal:

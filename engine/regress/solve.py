@@ -27,7 +27,7 @@ from engine.models.resample import interpolate
 from engine.regress.infer import Regressor
 from engine.regress.plausibility import DEFAULT_BELIEVABILITY, Plausible
 from engine.regress.prior import ONE_WAY_SHAPES, Columns, FacePrior, bundled_prior
-from engine.regress.projection import STEPS, project
+from engine.regress.projection import project
 from engine.regress.proposal import Proposer
 from engine.take import MODEL_FPS, SHAPES, Array, Mask, Take, runs
 
@@ -54,7 +54,6 @@ _UPRIGHT = [ALL_INDEX[name] for name in ("lips_vertical", "nose_to_lip", "chin_t
 _SIGNED = np.array([control.signed for control in ALL_CONTROLS])
 FADE_FROM = 0.1  # of the largest change asked; its place, unlike that of the first change, is the same at any rate
 KNOWN_FRAMES = 256  # up to which the matrix of a spline is kept; it grows with the square of them
-GUESS_ROUNDS = 1  # of the face that tells the networks what the other curves do; they do not feel the rest
 ASKED_MM = 1e-7  # a departure from what is there that is one
 
 
@@ -192,7 +191,7 @@ class Solver:
             weights
         )  # and not between measured frames: these would ask for a change themselves
         target = np.maximum(own + pulled, np.where(_SIGNED, -np.inf, 0.0))
-        guess = self._projected(weights, target, hold, rounds=GUESS_ROUNDS)
+        guess = self._projected(weights, target, hold, roughly=True)
         curves = self._measurer.measure(guess)
         curves = curves + hold * (target - curves)
         areas = tuple(area for area in FREE if hold[:, _columns(area, but=_SIDEWAYS)].any())
@@ -200,7 +199,7 @@ class Solver:
         change = self._proposer.change(own, curves, areas, origin=origin)
         return np.asarray(gaussian_filter1d(change, self.tuning.smooth_s * MODEL_FPS, axis=0, mode="nearest"))
 
-    def _projected(self, weights: Array, target: Array, hold: Array, *, rounds: int = STEPS.rounds) -> Array:
+    def _projected(self, weights: Array, target: Array, hold: Array, *, roughly: bool = False) -> Array:
         """Return weights, (frames, 52), brought onto the target, (frames, 16), as firmly as it is held."""
         landed = weights
         for area in FREE:
@@ -209,11 +208,11 @@ class Solver:
             if len(columns):
                 covariance = self._covariances["aside" if columns.tolist() == [_SIDEWAYS] else area]
                 goal = target[:, columns], hold[:, columns]
-                landed = self._area(landed, columns, goal, covariance, rounds)
+                landed = self._area(landed, columns, goal, covariance, roughly)
         return landed
 
     def _area(
-        self, weights: Array, columns: Columns, goal: tuple[Array, Array], covariance: Array, rounds: int
+        self, weights: Array, columns: Columns, goal: tuple[Array, Array], covariance: Array, roughly: bool
     ) -> Array:
         target, hold = goal
         whole, landed = hold >= 1.0, weights
@@ -235,7 +234,7 @@ class Solver:
                     hold=now[rows],
                     covariance=covariance,
                     measurer=self._measurer,
-                    rounds=rounds,
+                    roughly=roughly,
                 )
         return landed
 
