@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from scipy.ndimage import minimum_filter1d, uniform_filter1d
 
-from engine.controls import ALL_CONTROLS, CONTROLS
+from engine.controls import ALL_CONTROLS, ALL_INDEX, CONTROLS
 from engine.easing import ease
 from engine.regress.prior import Columns, FacePrior, despiked
 from engine.take import Array, Mask
@@ -54,6 +54,7 @@ class Limits:
 LIMITS = Limits()
 AREAS = ("lower", "eyelids", "brows", "gaze")
 DEFAULT_BELIEVABILITY = 0.5
+_LIPS = ALL_INDEX["lips_vertical"]
 
 
 def room_of(believability: float, limits: Limits = LIMITS) -> float:
@@ -80,6 +81,7 @@ class Plausible:
     def granted(self, asked: Array, own: Array, *, believability: float, fps: float) -> Array:
         """Return the asked curves, (frames, 16), as far as they are plausible; NaN in and out where nothing is asked.
 
+        Beside many curves of the mouth, though, lips that nothing is asked of stay as they are.
         `own`, (frames, 16), is what the face does at these frames: what is granted lies between that and what is asked.
         """
         room = room_of(believability, self._limits)
@@ -97,7 +99,10 @@ class Plausible:
         span, (own_low, own_high) = room * (self._prior.high - self._prior.low), self._extremes
         goal = np.maximum(_eased_off(goal, self._prior.high, span), np.minimum(goal, own_high))
         goal = np.minimum(-_eased_off(-goal, -self._prior.low, span), np.maximum(goal, own_low))
-        return np.where(wanted, np.clip(goal, np.fmin(own, asked), np.fmax(own, asked)), np.nan)
+        granted = np.where(wanted, np.clip(goal, np.fmin(own, asked), np.fmax(own, asked)), np.nan)
+        if every and not wanted[:, _LIPS].any():  # so many would pull lips apart that touch, which nothing asked for
+            granted[:, _LIPS] = own[:, _LIPS]
+        return granted
 
     def _all_at_once(self, wanted: Mask) -> tuple[str, ...]:
         """Return the areas whose curves are asked for so many together that they leave the face no way of its own."""

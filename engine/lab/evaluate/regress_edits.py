@@ -71,7 +71,8 @@ def table(data: Path | None, report: Report) -> list[Row]:
     at hand), `times_recorded` their mean ratio to those of the recorded row; `impossible` is the share of frames with a
     pair of shapes that exclude each other; `missed_mm` the root mean square by which controls miss what was asked.
     `closures_kept_*` is the share of closures which are in the take and in the request, and in what came of it too;
-    `closures_invented_*` how many came that are in neither, to each of these; means over the thresholds of `regress`.
+    `closures_invented_*` how many came that are in neither, to each of these; means over the thresholds of `regress` below
+    which any is.
     Weights are held to 0..1, as the editor holds them.
     """
     pieces = pieces_to_measure(data)
@@ -152,9 +153,11 @@ def _closures(results: Sequence[tuple[Array, Array]], pieces: Sequence[Piece]) -
                 faces = (asked, *(bundled_measurer().measure(one) for one in (piece.weights, made)))
                 counted.append([_counted(*(face[:, columns] for face in faces), below=mm) for mm in thresholds])
         if counted:
-            both, kept, invented = np.sum(counted, axis=0).T.astype(float)
-            figures[f"closures_kept_{part}"] = float((kept / np.maximum(both, 1)).mean())
-            figures[f"closures_invented_{part}"] = float((invented / np.maximum(both, 1)).mean())
+            counts = np.sum(counted, axis=0).astype(float)
+            both, kept, invented = counts[counts[:, 0] > 0].T  # a threshold below which nothing closes tells nothing
+            if len(both):
+                figures[f"closures_kept_{part}"] = float((kept / both).mean())
+                figures[f"closures_invented_{part}"] = float((invented / both).mean())
     return figures
 
 

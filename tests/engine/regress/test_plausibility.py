@@ -118,3 +118,14 @@ def test_all_curves_asked_again_stay_where_they_are(fps: float) -> None:
     twice = Plausible(rows, PRIOR).granted(wish, there, believability=0.5, fps=fps)
     moved = np.abs(once - rows)[:, columns].mean()
     assert np.abs(twice - once)[:, columns].mean() <= 0.2 * moved
+
+
+def test_beside_many_curves_of_the_mouth_lips_stay_as_they_are() -> None:
+    """As a paste of a whole mouth has it whose lips were shut already: nothing asked them to open."""
+    own = np.repeat(REST[:1], 60, axis=0)
+    wish = np.full((60, COUNT), np.nan)
+    wish[10:50, [1, 4, 5, 6, 7]] = own[10:50, [1, 4, 5, 6, 7]] + 3.0
+    many = Plausible(own, PRIOR).granted(wish, own, believability=0.5, fps=30.0)
+    np.testing.assert_array_equal(many[:, 0], own[:, 0])
+    wish[:, 7] = np.nan
+    assert np.isnan(Plausible(own, PRIOR).granted(wish, own, believability=0.5, fps=30.0)[:, 0]).all()
