@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.ndimage import minimum_filter1d, uniform_filter1d
+from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from engine.controls import ALL_CONTROLS, ALL_INDEX, CONTROLS
 from engine.easing import ease
@@ -33,6 +33,8 @@ class Limits:
         face with all curves doubled is 1.5 times as far from a recording as the take is, at .75 1.1 times
     about_s : seconds around a frame that is drawn back, over which its neighbours are too [0 .. .8]; so the form of a
         motion stays. Without it a face with all curves doubled moves unlike faces, 1.2 times as far from them
+    near_s : seconds on either side, within which what the take does is plausible at a frame [0, 1]; at 0 a mouth held as it
+        was a second ago is reached by .84, and motion halved by .79
     quick, noisy : departures as quick as were ever recorded, at once on average over `spell_s`: so many are gestures, as a
         blink of both eyes is, so many are noise [.3 .. 2]
     spell_s : seconds over which they are counted [.3 .. 1]
@@ -45,6 +47,7 @@ class Limits:
     many: int = 5
     together: float = 0.75
     about_s: float = 0.13
+    near_s: float = 1.0
     quick: float = 0.4
     noisy: float = 0.9
     spell_s: float = 0.67
@@ -117,12 +120,15 @@ class Plausible:
         """Return rows, (frames, n), drawn back to what the take does until they are within the joint limit of many.
 
         With b what the take does and a what is asked beyond it, both from the mean face in the whitened space, a frame
-        keeps the largest share s of a for which ``|b + s a|`` is within the limit, or no further out than b.
+        keeps the largest share s of a for which ``|b + s a|`` is within the limit, or no further out than the
+        take is within `near_s`.
         """
         mean, whiten, radius = self._prior.ball(columns, self._limits.together)
         radius = max(radius, self._furthest_of(columns, self._limits.together))
         begun, along = (own - mean) @ whiten.T, (asked - own) @ whiten.T
-        share = _share_within(begun, along, np.maximum(radius, np.linalg.norm(begun, axis=1)))
+        near = 2 * round(self._limits.near_s * fps) + 1
+        furthest = maximum_filter1d(np.linalg.norm(begun, axis=1), near, mode="nearest")
+        share = _share_within(begun, along, np.maximum(radius, furthest))
         about = 2 * round(self._limits.about_s * fps) + 1
         share = uniform_filter1d(minimum_filter1d(share, about, mode="nearest"), about, mode="nearest")
         return np.asarray(own + share[:, None] * (asked - own))

