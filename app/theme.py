@@ -83,7 +83,7 @@ def qt_palette(colours: Palette) -> QPalette:
     """Return the colours of what no style sheet reaches, such as the bars of a list that drops down."""
     from PySide6.QtGui import QColor, QPalette
 
-    role, made = QPalette.ColorRole, QPalette()
+    role, colouring = QPalette.ColorRole, QPalette()
     for name, colour in (
         (role.Window, colours.ground),
         (role.Base, colours.panel),
@@ -103,10 +103,10 @@ def qt_palette(colours: Palette) -> QPalette:
         (role.Dark, colours.ground),
         (role.Shadow, colours.ground),
     ):
-        made.setColor(name, QColor(colour))
+        colouring.setColor(name, QColor(colour))
     for name in (role.WindowText, role.Text, role.ButtonText):
-        made.setColor(QPalette.ColorGroup.Disabled, name, QColor(colours.faint))
-    return made
+        colouring.setColor(QPalette.ColorGroup.Disabled, name, QColor(colours.faint))
+    return colouring
 
 
 def style_sheet(colours: Palette) -> str:
@@ -116,7 +116,7 @@ def style_sheet(colours: Palette) -> str:
 
 
 def _ground(c: Palette) -> str:
-    """Return the looks of what everything stands on: windows, panels, labels."""
+    """Return the style of windows, panels and labels."""
     return f"""
 * {{ font-size: {FONT_PX}px; color: {c.text}; }}
 QMainWindow, QDialog, QWidget#central {{ background: {c.ground}; }}
@@ -128,7 +128,7 @@ QLabel[warning="true"] {{ color: {c.warning}; }}"""
 
 
 def _buttons(c: Palette) -> str:
-    """Return the looks of buttons, sliders and boxes to tick."""
+    """Return the style of buttons, sliders and boxes to tick."""
     return f"""
 QToolButton, QPushButton {{
   background: transparent; border: 1px solid transparent; border-radius: 4px; padding: 5px 10px; }}
@@ -154,7 +154,7 @@ QCheckBox {{ border: 1px solid transparent; border-radius: 4px; padding: 2px; sp
 
 
 def _entries(c: Palette) -> str:
-    """Return the looks of what is typed into and chosen from."""
+    """Return the style of entries, boxes and lists."""
     return f"""
 QDoubleSpinBox, QSpinBox, QLineEdit, QComboBox, QPlainTextEdit, QListView, QTreeView, QTableView {{
   background: {c.ground}; border: 1px solid {c.edge}; border-radius: 4px; padding: 3px 6px;
@@ -164,8 +164,10 @@ QTreeView:focus, QTableView:focus {{ border-color: {c.accent}; }}
 QAbstractSpinBox::up-button, QAbstractSpinBox::down-button {{ width: 0; border: none; }}
 QComboBox::drop-down {{ border: none; width: 20px; }}
 QComboBox::down-arrow {{ image: url("{ICONS}/down.svg"); width: 10px; height: 6px; }}
-QComboBox QAbstractItemView {{ background: {c.panel}; border: 1px solid {c.edge}; padding: 0; }}
-QComboBoxPrivateContainer {{ background: {c.panel}; border: none; }}
+QComboBox QAbstractItemView {{ background: {c.panel}; border: 1px solid {c.edge}; border-radius: 0; padding: 0; }}
+QComboBoxPrivateContainer, QComboBoxPrivateScroller {{ background: {c.panel}; border: none; }}
+QTableView QComboBox {{ padding: 1px 2px 1px 4px; }}
+QTableView QComboBox::drop-down {{ width: 14px; }}
 QFileDialog QToolButton {{ padding: 2px; }}
 QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
 QHeaderView {{ background: {c.panel}; }}
@@ -173,7 +175,7 @@ QHeaderView::section {{ background: {c.panel}; color: {c.quiet}; border: none; p
 
 
 def _menus(c: Palette) -> str:
-    """Return the looks of menus and tooltips."""
+    """Return the style of menus and tooltips."""
     return f"""
 QMenuBar {{ background: {c.ground}; }}
 QMenuBar::item {{ padding: 4px 8px; background: transparent; }}
@@ -187,7 +189,7 @@ QToolTip {{ background: {c.raised}; color: {c.text}; border: 1px solid {c.edge};
 
 
 def _bars(c: Palette) -> str:
-    """Return the looks of scroll bars, splitters and bars of progress."""
+    """Return the style of scroll bars, splitters and bars of progress."""
     return f"""
 QScrollBar:horizontal {{ height: 10px; background: transparent; margin: 0; }}
 QScrollBar::handle:horizontal {{ background: {c.edge}; border-radius: 4px; min-width: 24px; margin: 1px; }}

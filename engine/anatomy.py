@@ -59,9 +59,13 @@ def pairs() -> tuple[tuple[int, int, int], ...]:
     """
     found: list[tuple[int, int, int]] = []
     for row, (first, second, _) in enumerate(EXCLUSIVE):
-        ones, others = _sided(first), _sided(second)
-        together = zip(ones, others, strict=True) if len(ones) == len(others) else itertools.product(ones, others)
-        found += [(SHAPE_INDEX[one], SHAPE_INDEX[other], row) for one, other in together]
+        first_sides, second_sides = _sided(first), _sided(second)
+        together = (
+            zip(first_sides, second_sides, strict=True)
+            if len(first_sides) == len(second_sides)
+            else itertools.product(first_sides, second_sides)
+        )
+        found += [(SHAPE_INDEX[left], SHAPE_INDEX[right], row) for left, right in together]
     return tuple(found)
 
 

@@ -6,8 +6,6 @@ from importlib.resources import files
 from pathlib import Path
 
 INSTALLED = "_assets"  # what a wheel calls the folder, inside the package
-
-
 PACKAGE = Path(str(files("engine")))
 CHECKOUT = PACKAGE.resolve().parent  # where the program is run from its sources
 TEMPLATES = PACKAGE / "review"

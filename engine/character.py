@@ -117,8 +117,10 @@ def without_lacking(take: Take, character: Character) -> Take:
     weights = take.weights.copy()
     weights[:, lacking] = 0.0
     shown = ", ".join(lost[:4]) + (f" and {len(lost) - 4} more" if len(lost) > 4 else "")
-    said = (f"{character.name} has no {shown}: what the source does there is not in the new take.",) if lost else ()
-    return replace(take, weights=weights, notices=(*take.notices, *said))
+    notices_added = (
+        (f"{character.name} has no {shown}: what the source does there is not in the new take.",) if lost else ()
+    )
+    return replace(take, weights=weights, notices=(*take.notices, *notices_added))
 
 
 def load(path: Path = BUNDLED) -> Character:

@@ -1,4 +1,4 @@
-"""How one thing turns into another without a start or a stop."""
+"""Easing: the smooth step between two states."""
 
 from __future__ import annotations
 

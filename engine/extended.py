@@ -16,16 +16,16 @@ from engine.jaw import CLOSE, JAW, ahead, limited
 from engine.take import SHAPE_INDEX, SHAPES, Array, Mask
 
 EXTENDED_INDEX: dict[str, int] = {control.name: len(CONTROLS) + index for index, control in enumerate(EXTENDED)}
-_LENGTH, _PLACE, _ANGLE = range(3)
+LENGTH, PLACE, ANGLE = range(3)
 # Of each control, the vectors that it is the mean over, each by its row, what is read of it, and along which axis.
-_TERMS: tuple[tuple[tuple[int, int, int], ...], ...] = (
-    *(((row, _LENGTH, 0),) for row in range(10)),  # the eight distances, right and left brow
-    ((10, _LENGTH, 0), (11, _LENGTH, 0)),  # inner brows
-    ((12, _PLACE, 0),),  # chin
-    ((13, _ANGLE, 0), (14, _ANGLE, 0)),  # pupils
-    ((13, _ANGLE, 1), (14, _ANGLE, 1)),
-    ((15, _PLACE, 1),),  # corners of the mouth
-    ((16, _PLACE, 1),),
+TERMS: tuple[tuple[tuple[int, int, int], ...], ...] = (
+    *(((row, LENGTH, 0),) for row in range(10)),  # the eight distances, right and left brow
+    ((10, LENGTH, 0), (11, LENGTH, 0)),  # inner brows
+    ((12, PLACE, 0),),  # chin
+    ((13, ANGLE, 0), (14, ANGLE, 0)),  # pupils
+    ((13, ANGLE, 1), (14, ANGLE, 1)),
+    ((15, PLACE, 1),),  # corners of the mouth
+    ((16, PLACE, 1),),
 )
 _EVERY = np.arange(len(ALL_CONTROLS))
 _LEAST_MM, _LEAST_FORWARD_MM = 1e-9, 1e-3
@@ -44,7 +44,7 @@ class Gauges:
     """
 
     def __init__(self, rest: Array, basis: Array, *, columns: Columns, shapes: Columns) -> None:
-        terms = [(place, *term) for place, column in enumerate(columns.tolist()) for term in _TERMS[column]]
+        terms = [(place, *term) for place, column in enumerate(columns.tolist()) for term in TERMS[column]]
         place, rows, kind, axis = np.array(terms).T
         self._rest, self._basis = rest[rows], basis[:, rows].reshape(len(SHAPES), -1)
         self._slopes = np.ascontiguousarray(basis[shapes][:, rows].transpose(1, 2, 0))  # (terms, 3, shapes)
@@ -52,7 +52,7 @@ class Gauges:
         self._jaw_at, self._close_at = np.flatnonzero(shapes == JAW), np.flatnonzero(shapes == CLOSE)
         self._first = np.flatnonzero(np.diff(place, prepend=-1))  # term of each control
         self._pairs = np.flatnonzero(np.diff(self._first, append=len(place)) > 1)  # controls of two terms
-        self._places, self._angles = np.flatnonzero(kind == _PLACE), np.flatnonzero(kind == _ANGLE)
+        self._places, self._angles = np.flatnonzero(kind == PLACE), np.flatnonzero(kind == ANGLE)
         self._axis = axis
 
     def vectors(self, weights: Array) -> Array:
@@ -140,6 +140,11 @@ class FaceMeasurer:
         basis = np.concatenate([end_deltas - start_deltas, deltas[:, vertices]], axis=1)  # (52, 17, 3) mm
         self._vectors = rest_vectors, basis
         self._known: dict[tuple[bytes, bytes], Gauges] = {}
+
+    @property
+    def linear(self) -> tuple[Array, Array]:
+        """Return the vectors that controls are read of at rest, (17, 3), and their basis, (52, 17, 3), both in mm."""
+        return self._vectors
 
     def gauges(self, columns: Columns = _EVERY, shapes: Columns | None = None) -> Gauges:
         """Return these controls alone, by these shapes or all of them."""

@@ -1,4 +1,4 @@
-"""How far a mouth is from those that were recorded: the distance under the learned prior, and how many are nearer."""
+"""The Mahalanobis distance of a mouth from the recorded ones, and the share of them that is nearer."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Recorded:
         return float(self.distances[-1])
 
     def distance(self, controls: Array) -> Array:
-        """Return ``|W (c - mean)|``, (frames,), of controls, (frames, all controls)."""
+        """Return the Mahalanobis distance ``|W (c - mean)|``, (frames,), of controls, (frames, all controls)."""
         away = np.einsum("fc,dc->fd", controls[:, MOUTH] - self.mean, self.whiten)
         return np.asarray(np.round(np.sqrt(np.einsum("fd,fd->f", away, away)), DIGITS))
 
@@ -50,7 +50,7 @@ class Recorded:
 
 
 def recorded_of(faces: Array) -> Recorded:
-    """Return what mouths are compared with, from the controls of recorded faces, (faces, all controls)."""
+    """Return the recorded mouths, from the controls of recorded faces, (faces, all controls)."""
     mouths = faces[:, MOUTH]
     covariance = np.cov(mouths.T)
     whiten = np.linalg.inv(np.linalg.cholesky(covariance + RIDGE * np.diag(np.diag(covariance))))
@@ -60,7 +60,7 @@ def recorded_of(faces: Array) -> Recorded:
 
 @lru_cache(maxsize=1)
 def recorded(folder: Path = MODELS) -> Recorded:
-    """Return what the prior that ships was learned from; raises `AssetError` where it is missing or damaged."""
+    """Return the faces that the bundled prior was learned from; raises `AssetError` where it is missing or damaged."""
     from safetensors import SafetensorError, safe_open
 
     try:  # by numpy: torch takes seconds to load, and the window should be seen first

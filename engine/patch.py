@@ -1,4 +1,4 @@
-"""What an edit comes to: new weights for a range of frames."""
+"""The result of an edit: new weights for a range of frames."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Patch:
     ----------
     start : first frame
     weights : (frames, 52)
-    asked : (frames, 16) control curves that were asked for, NaN where nothing was
-    reached : (frames, 16) what the new face does
-    granted : (frames, 16) what was asked as far as it is believable; None where nobody asked for a curve
+    asked : (frames, 16) control targets, NaN for none
+    reached : (frames, 16) controls of the new weights
+    granted : (frames, 16) targets within the plausibility limit; None where there was no target
     lost : (frames,) bool, the frames that are lost from now on; None leaves it to `Take.with_rows`
-    lag_ms : of cleaning, by how much the frames trail the recorded ones at full strength; NaN where nothing moves
+    lag_ms : of cleaning, lag behind the recorded frames at full strength; NaN where nothing moves
     """
 
     start: int
@@ -42,7 +42,7 @@ class Patch:
 
     @classmethod
     def between(cls, before: Take, after: Take, frames: tuple[int, int]) -> Patch:
-        """Return the patch that turns one take into another over a half-open range; nothing was asked of controls.
+        """Return the patch that turns one take into another over a half-open range, without control targets.
 
         The range is grown over the lost frames beside it, which follow what changed.
         """
@@ -60,7 +60,7 @@ class Patch:
         return take.with_exact_rows(self.start, self.weights, self.lost)
 
     def settled(self, take: Take) -> Patch:
-        """Return the patch over every frame of a take that it changes, which says of each whether it is lost."""
+        """Return the patch over every frame of a take that it changes, with which of them are lost."""
         if self.lost is not None:
             return self
         whole = Patch.between(take, self.apply(take), (self.start, self.stop))

@@ -1,4 +1,4 @@
-"""A pose that is asked for: some weights of one frame, or all."""
+"""A target pose: some weights of a frame, or all."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Editing weights directly: curves pulled by hand, ranges pasted, Butterworth smoothing. No network has a say."""
+"""Editing weights directly: curves pulled by hand, ranges pasted, Butterworth smoothing. No network is involved."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ORDER = 2  # filtered once in each direction, so the slope is that of order 4 an
 
 
 def _patch(take: Take, start: int, weights: Array, *, found: Mask | None = None) -> Patch:
-    """Return a patch whose asked curves are what the face does: nothing was asked of the controls."""
+    """Return a patch without control targets."""
     return Patch.between(take, take.with_rows(start, weights, found=found), (start, start + len(weights)))
 
 

@@ -1,4 +1,4 @@
-"""What an edit did not reach of what was asked, and what stands in the way."""
+"""The targets that an edit did not reach, and why."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from engine.extended import bundled_face
 from engine.regress.solve import FREE
 from engine.take import SHAPES, Array
 
-SHORT = 0.5  # mm or degrees; misses that are told of
+SHORT = 0.5  # mm or degrees; misses that are reported
 LEVER = 0.75  # a shape at its limit is why, when its full range would move the control by at least this
 AT_LIMIT = 1e-3  # mm that a shape could still bring
 NAMED = 2  # limits at most that a sentence lists
@@ -20,15 +20,15 @@ NAMED = 2  # limits at most that a sentence lists
 
 @dataclass(frozen=True)
 class Shortfall:
-    """Where a control misses most what was asked of it.
+    """The frame at which a control misses its target most.
 
     Attributes
     ----------
     control : its column
     row : which of the frames
     asked, reached : in the control's unit
-    why : what stands in the way, as the screen says it
-    believed : whether it is the believability setting: the face itself could go further
+    why : the reason, as the screen shows it
+    believed : whether the plausibility limit is the reason: the face itself could go further
     """
 
     control: int
@@ -46,8 +46,8 @@ class Shortfall:
 def shortfalls(weights: Array, asked: Array, *, believability: float, granted: Array | None = None) -> list[Shortfall]:
     """Return each control that misses by more than `SHORT`, at its worst frame.
 
-    `weights` are (frames, 52), `asked` (frames, 16) with NaN where nothing is asked, `believability` that of the edit;
-    `granted`, (frames, 16), is what was believable of it, where that is known.
+    `weights` are (frames, 52), `asked` (frames, 16) with NaN for no target, `believability` that of the edit;
+    `granted`, (frames, 16), are the targets within the plausibility limit, where known.
     """
     missing = np.nan_to_num(asked - bundled_face().measure(weights))
     found = []
@@ -60,10 +60,10 @@ def shortfalls(weights: Array, asked: Array, *, believability: float, granted: A
             for index, control in enumerate(ALL_CONTROLS)
             if index != column and control.area == ALL_CONTROLS[column].area and not np.isnan(asked[row, index])
         ]
-        wanted = float(asked[row, column])
+        target = float(asked[row, column])
         why = _why(limits, others, believable=believability > 0)
         believed = believability > 0 and not limits
-        found.append(Shortfall(column, row, wanted, wanted - float(missing[row, column]), why, believed))
+        found.append(Shortfall(column, row, target, target - float(missing[row, column]), why, believed))
     return found
 
 
@@ -82,6 +82,6 @@ def _limits(weights: Array, column: int, miss: float) -> tuple[str, ...]:
     able = np.where(lever > 0, 1.0 - weights[0], weights[0]) * np.abs(lever)  # left until the limit
     if able.sum() > np.abs(miss):
         return ()
-    held = np.where(able < AT_LIMIT, np.abs(lever), 0.0)
-    order = np.argsort(-held)[:NAMED]
-    return tuple(SHAPES[shape] for shape in order if held[shape] >= LEVER)
+    limited = np.where(able < AT_LIMIT, np.abs(lever), 0.0)
+    order = np.argsort(-limited)[:NAMED]
+    return tuple(SHAPES[shape] for shape in order if limited[shape] >= LEVER)

@@ -34,15 +34,15 @@ class EditActions(QObject):
     session, inference, curves, filling : what they work on
     """
 
-    told = Signal(str)  # a short remark for the status bar
+    message = Signal(str)  # a short remark for the status bar
 
     def __init__(self, session: Session, inference: Editing, curves: CurvesPanel, filling: Filling) -> None:
         super().__init__()
         self._session, self._inference, self._curves, self._filling = session, inference, curves, filling
         self._copied: Array | None = None
         self.cutoff_hz: Callable[[], float] = lambda: 6.0
-        self.let_go: Callable[[], bool] = lambda: False  # of what is held on the timeline; whether there was any
-        self.put_away: Callable[[], bool] = lambda: False  # the notice that is shown; whether there was any
+        self.cancel_move: Callable[[], bool] = lambda: False  # cancels a move on the timeline; whether there was any
+        self.hide_notice: Callable[[], bool] = lambda: False  # the notice that is shown; whether there was any
         self.stop_else: Callable[[], bool] = lambda: False  # stops other work under way; whether there was any
 
     def undo(self) -> None:
@@ -58,7 +58,7 @@ class EditActions(QObject):
             self._session.document.undo.redo()
 
     def cancel(self) -> None:
-        """Drop the gesture, the fill or the preview under way; with none, put a notice away, then clear the selection."""
+        """Cancel the gesture, the fill or the preview; with none, hide a notice, then clear the selection."""
         tool = self._curves.tool
         if tool.busy:
             tool.cancel()
@@ -66,7 +66,7 @@ class EditActions(QObject):
             self._filling.drop()
         elif self._inference.busy:
             self._inference.cancel()
-        elif not (self.let_go() or self.stop_else() or self.put_away()):
+        elif not (self.cancel_move() or self.stop_else() or self.hide_notice()):
             self._session.view.select(None)
 
     def close_here(self) -> None:
@@ -111,7 +111,7 @@ class EditActions(QObject):
             self._fill_again(step)
             return
         if not isinstance(step, EditCommand) or step.asked is None or self._inference.busy:
-            self.told.emit("the last step asked for no curve")
+            self.message.emit("the last step set no curve")
             return
         start, asked = step.asked
         self.undo()
@@ -131,7 +131,7 @@ class EditActions(QObject):
         session = self._session
         start, stop = session.view.selection or (session.view.playhead, session.view.playhead + 1)
         self._copied = session.document.take.weights[start:stop]
-        self.told.emit(f"copied {counted(stop - start, 'frame')}")
+        self.message.emit(f"copied {counted(stop - start, 'frame')}")
 
     def paste(self) -> None:
         """Put what was copied in place from the playhead on."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from functools import partial
+from collections.abc import Iterable
 from pathlib import Path
 from threading import Thread
 
@@ -11,11 +10,11 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.actions.export_report import export_report
+from app.actions.opener import Opener
 from app.playback import media
 from app.playback.media import Media
 from app.session import Session
 from app.session.keeper import Keeper
-from app.session.opening import Opened, Opening, Wish
 from app.settings import Settings
 from app.widgets.saving import ask_where, beside, may_replace
 from app.widgets.text import message_box
@@ -23,16 +22,13 @@ from engine.errors import EngineError
 from engine.formats import FORMATS, cues, write_take
 from engine.formats.base.atomic import sweep
 from engine.formats.base.reading import Sides
+from engine.formats.characters.opening import SECOND
 from engine.formats.livelink import folder as livelink_folder
 from engine.formats.livelink.folder import CARD
-from engine.formats.livelink.importing import Imported
 from engine.project import ENDING
 from engine.take import Take
-from engine.words import NAME_LENGTH, plain
 
-Answer = QMessageBox.StandardButton
 ORIGINAL = "{} is the take as it was recorded."
-COPY = "What you do to it here is kept as unsaved work, until you save it under another name."
 # What a take is exported as: as it was read, or with left and right of mouth and jaw as the app or by their names.
 SIDES_WRITTEN: dict[str, Sides] = {
     "": "automatic",
@@ -54,9 +50,13 @@ class FileActions(QObject):
     session, keeper, media : what is open, what keeps it safe, and what plays along
     settings : remembers recent files
     window : the parent of the dialogs
+
+    Attributes
+    ----------
+    opener : opens what was chosen
     """
 
-    told = Signal(str, str)  # sentence, advice
+    message = Signal(str, str)  # sentence, advice
     wrote = Signal(str, str)  # what was written, and what the file cannot hold
     opened = Signal()
     capture_dropped = Signal(object)  # the path of a file of markers
@@ -66,89 +66,15 @@ class FileActions(QObject):
     def __init__(self, session: Session, keeper: Keeper, media: Media, settings: Settings, window: QWidget) -> None:
         super().__init__()
         self._session, self._keeper, self._media = session, keeper, media
-        self.opening = Opening(session)
-        self.imported: Imported | None = None  # what the file that was opened last says of itself
-        self._newest: Wish | None = None  # of those that were read
-        self._reopens = False
-        self._given_up: tuple[object, ...] | None = None  # the edits that go when the file is read
-        self.opening.done.connect(self._confirm)
-        self.opening.changed.connect(self._keep_again)
-        self.opening.failed.connect(self.told)
-        self.opening.in_use.connect(self._offer_copy)
+        self.opener = Opener(session, keeper, settings, window, self.save)
+        self.opener.failed.connect(self.message)
+        self.opener.opened.connect(self.opened)
         self._settings, self._window = settings, window
         keeper.saved.connect(settings.remember)
 
     def load(self, path: Path, *_: object) -> None:
-        """Read a take or a project, and open it when it is read; returns at once. Unsaved edits are asked about before.
-
-        `opened` follows, or `told` where the file cannot be read: what is open then stays as it was.
-        """
-        self._given_up = None
-        if self._keeper.holds(path):
-            self.when_safe(partial(self._reopen, path))
-        elif self._session.document.edited:
-            self._ask(partial(self.opening.read, path), discard=self._agree)  # before it is read, which may take long
-        else:
-            self.opening.read(path)
-
-    def _agree(self) -> None:
-        """Remember which edits may be given up once the file that was chosen is read."""
-        self._given_up = self._edits()
-
-    def _edits(self) -> tuple[object, ...]:
-        session = self._session
-        return (
-            session.document.original,
-            session.document.undo.index(),
-            session.document.undo.count(),
-            session.document.marks,
-        )
-
-    def _reopen(self, path: Path) -> None:
-        self._keeper.release()
-        self._reopens = True
-        self.opening.read(path)
-
-    def _keep_again(self) -> None:
-        """Keep what is open as unsaved work where its project could not be read anew."""
-        if self._reopens and self.opening.path is None:
-            self._reopens = False
-            self._keeper.keep()
-
-    def _offer_copy(self, path: Path, sentence: str) -> None:
-        """Offer to work on a copy of a project that another program has open."""
-        question = f"{sentence}\n\nOpen a copy? {COPY}"
-        if QMessageBox.question(self._window, "Open elsewhere", question, Answer.Open | Answer.Cancel) == Answer.Open:
-            self.opening.read(path, read_only=True)
-
-    def _confirm(self, opened: Opened) -> None:
-        """Open what was read; ask for unsaved edits where there are any that the user did not give up."""
-        self._newest, self._reopens = opened.wish, False
-        given_up, self._given_up = self._given_up, None
-        if given_up == self._edits():
-            self._keeper.when_idle(partial(self._open, opened, discard=True))
-        else:
-            self.when_safe(partial(self._open, opened), opened.drop)
-
-    def _open(self, opened: Opened, *, discard: bool = False) -> None:
-        """Open what was read in place of what is open."""
-        if opened.wish is not self._newest or self.opening.path is not None:
-            opened.drop()  # while its predecessor was being saved, something else was chosen
-            return
-        if discard:
-            self._keeper.forget()
-        path, left_over = opened.wish.path, opened.wish.left_over
-        self.imported = opened.imported
-        if opened.project is not None:
-            self._keeper.open(opened)
-        else:
-            self._session.open(opened.take, opened.path, opened.measured[0])
-        if not left_over:
-            self._settings.remember(path)
-        self.opened.emit()
-        if opened.project is not None and opened.project.read_only:
-            what = f"This is a copy of {path.name}" if opened.wish.read_only else f"{path.name} cannot be written here"
-            self.told.emit(f"{what}; your edits are kept as unsaved work.", "Save it under another name.")
+        """Read a take or a project, and open it when it is read; returns at once."""
+        self.opener.load(path)
 
     def take_in(self, path: Path) -> None:
         """Open or attach a file, by its ending."""
@@ -207,7 +133,7 @@ class FileActions(QObject):
         try:
             write_take(self._session.document.take, path, EXPORTS.get(kind, "automatic"))
         except EngineError as error:
-            self.told.emit(error.sentence, error.advice)
+            self.message.emit(error.sentence, error.advice)
             return False
         self._settings.remember(path)
         saved = self._keeper.path is not None and not self._session.document.edited
@@ -216,57 +142,22 @@ class FileActions(QObject):
 
     def open_recording(self, take: Take) -> None:
         """Open what was recorded live, unless edits would be lost."""
+        self.opener.open_take(take)
 
-        self.open_then(take, lambda: None)
+    def own_head(self) -> None:
+        """Show the take on the head that comes with Retake."""
+        self.character_chosen.emit(None)
 
-    def open_then(self, take: Take, then: Callable[[], None]) -> None:
-        """Open a take that no file holds, unless edits would be lost, and go on."""
-
-        def show() -> None:
-            self.imported = None
-            self._session.open(take, None)
-            self._keeper.keep()
-            self.opened.emit()
-            then()
-
-        self.when_safe(show)
+    def second_head(self) -> None:
+        """Show the take on the second bundled head."""
+        self.character_chosen.emit(SECOND)
 
     def load_character(self) -> None:
-        """Choose a head to show the take on, and to carry it to by default; none goes back to the bundled one."""
+        """Choose a file with a head to show the take on, and to retarget to by default."""
         kinds = "Heads (*.npz *.glb *.gltf *.vrm *.obj *.ply *.stl)"
         name, _ = QFileDialog.getOpenFileName(self._window, "Show on another head", "", kinds)
-        self.character_chosen.emit(Path(name) if name else None)
-
-    def when_safe(self, then: Callable[[], None], otherwise: Callable[[], None] = lambda: None) -> None:
-        """Do what closes the open take: at once, or when its edits are saved, or never, as the user says."""
-        if not self._keeper.when_idle(partial(self._ask, then, otherwise)):
-            self.told.emit(
-                f"{self._session.document.name} is being saved; then it is closed.", "You may go on working."
-            )
-
-    def _ask(
-        self,
-        then: Callable[[], None],
-        otherwise: Callable[[], None] = lambda: None,
-        *,
-        discard: Callable[[], None] | None = None,
-    ) -> None:
-        if not self._session.document.edited:
-            then()
-            return
-        answer = QMessageBox.question(
-            self._window,
-            "Unsaved edits",
-            f"{plain(self._session.document.name, longest=NAME_LENGTH)} has edits that are not saved.",
-            Answer.Save | Answer.Discard | Answer.Cancel,
-        )
-        if answer == Answer.Discard:
-            (discard or self._keeper.forget)()
-            then()
-        elif answer == Answer.Save and self.save():
-            self.when_safe(then, otherwise)
-        else:
-            otherwise()
+        if name:
+            self.character_chosen.emit(Path(name))
 
     def offer_left_over(self) -> None:
         """Offer the work of a program that ended early, and remove what it was writing."""
@@ -282,13 +173,13 @@ class FileActions(QObject):
         box.addButton("Later", QMessageBox.ButtonRole.RejectRole)
         box.exec()
         if box.clickedButton() is restore:
-            self.opening.read(left[0].path, left_over=True)
+            self.opener.opening.read(left[0].path, left_over=True)
         elif box.clickedButton() is discard:
             try:
                 for entry in left:
                     self._keeper.discard(entry)
             except EngineError as error:
-                self.told.emit(error.sentence, error.advice)
+                self.message.emit(error.sentence, error.advice)
 
     def _save_to(self, path: Path) -> bool:
         self._media.settle_in(path.parent)

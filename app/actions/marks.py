@@ -24,7 +24,7 @@ class MarkActions(QObject):
     """
 
     failed = Signal(str, str)  # sentence, advice
-    told = Signal(str)  # what is to be known in passing
+    message = Signal(str)  # what is to be known in passing
 
     def __init__(self, session: Session, notes: NotesSection, spans: SpansSection) -> None:
         super().__init__()
@@ -80,7 +80,7 @@ class MarkActions(QObject):
         if note is not None:
             notes.go_to(note)
         else:
-            self.told.emit(f"No open note {'after' if by > 0 else 'before'} this frame.")
+            self.message.emit(f"No open note {'after' if by > 0 else 'before'} this frame.")
 
     def remove_pin(self) -> None:
         """Remove the pin at the playhead; the pose stays as it is."""

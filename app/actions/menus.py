@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, QPoint, Qt
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QMainWindow, QMenu, QToolButton
 
-from app.actions.table import ACTIONS, CONTEXT, LINES, MENUS, TOOLBAR, all_keys
+from app.actions.table import ACTIONS, CONTEXT, LINES, MENUS, TOOLBAR, Action, all_keys
 from app.settings import PRESETS, Settings
 from app.theme import GRID
 from app.widgets.hints import Hints
@@ -49,11 +49,12 @@ class Menus(QObject):
         self._menus: dict[str, QMenu] = {}
         for title in MENUS:
             menu = self._menus[title] = window.menuBar().addMenu(title)
+            within: dict[str, QMenu] = {}
             for entry in ACTIONS:
                 if entry.menu == title:
                     if entry.name in LINES:
                         menu.addSeparator()
-                    menu.addAction(self.actions[entry.name])
+                    _menu_of(entry, menu, within).addAction(self.actions[entry.name])
         self._recent = QMenu("Open recent", window)
         self._menus["File"].insertMenu(self.actions["save"], self._recent)
         self._recent.aboutToShow.connect(self._fill_recent)
@@ -61,7 +62,7 @@ class Menus(QObject):
         self._offer_presets()
 
     def _one_of(self, names: Sequence[str]) -> None:
-        """Keep one of some actions checked: the key of the tool in hand, pressed again, does not put it down."""
+        """Group actions of which exactly one is checked: pressing the current tool's key again keeps the tool."""
         group = QActionGroup(self)
         for name in names:
             group.addAction(self.actions[name])
@@ -87,11 +88,11 @@ class Menus(QObject):
             self.actions[entry.name].setToolTip(f"{entry.title}  ({keys[0]})" if keys else entry.title)
 
     def show_hints(self, *, changed: bool, saved: bool, hatched: bool) -> None:
-        """Tell how to begin; after the first edit how to take it back, compare and save it; then nothing."""
+        """Show how to begin; after the first edit how to undo, compare and save it; then nothing."""
         undo, save, play, fill = (self.actions[name].shortcut().toString() for name in ("undo", "save", "play", "fill"))
         begin = ["Drag a curve", f"{play} plays", *([f"{fill} fills what is hatched"] if hatched else [])]
         edited = [f"{undo} takes it back", f"{save} saves", "hold B for before"]
-        self.hints.tell(begin if not changed else [] if saved else edited)
+        self.hints.show_all(begin if not changed else [] if saved else edited)
 
     def _fill_recent(self) -> None:
         self._recent.clear()
@@ -101,20 +102,22 @@ class Menus(QObject):
             entry.triggered.connect(partial(self._load, Path(name)))
         self._recent.setEnabled(bool(self._settings.recent))
 
-    def open_context(self, kinds: Sequence[str], at: QPoint, told: str = "") -> QMenu:
+    def open_context(self, kinds: Sequence[str], at: QPoint, heading: str = "") -> QMenu:
         """Offer what can be done with what lies at a point of the screen, kinds of `CONTEXT`, and say what it is."""
         menu = QMenu(self._window)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        if told:
-            menu.addAction(caption(told)).setEnabled(False)
+        if heading:
+            menu.addAction(caption(heading)).setEnabled(False)
             menu.addSeparator()
         listed: set[str] = set()
+        within: dict[str, QMenu] = {}
+        entries = {entry.name: entry for entry in ACTIONS}
         for kind in kinds:
             for name in CONTEXT[kind]:
                 if not name:
                     menu.addSeparator()
                 elif name not in listed:
-                    menu.addAction(self.actions[name])
+                    _menu_of(entries[name], menu, within).addAction(self.actions[name])
                     listed.add(name)
             menu.addSeparator()
         menu.popup(at)
@@ -145,3 +148,12 @@ class Menus(QObject):
                 row.addWidget(button)
         row.addWidget(self.hints, 1)
         return bar
+
+
+def _menu_of(entry: Action, menu: QMenu, within: dict[str, QMenu]) -> QMenu:
+    """Return the menu that an action goes into: `menu`, or the one inside it that the table names."""
+    if not entry.submenu:
+        return menu
+    if entry.submenu not in within:
+        within[entry.submenu] = menu.addMenu(entry.submenu)
+    return within[entry.submenu]

@@ -48,7 +48,7 @@ class SettingsActions(QObject):
 
     def edit_keys(self) -> None:
         """Show the keys of every action, to be changed."""
-        rows = [KeyRow(entry.name, entry.title.rstrip("…"), entry.menu) for entry in ACTIONS]
+        rows = [KeyRow(entry.name, entry.words, entry.menu) for entry in ACTIONS]
         dialog = KeysDialog(rows, lambda own: all_keys(self._settings.preset, own), self._settings, self._window)
         dialog.changed.connect(partial(self.apply, "keys"))
         dialog.show()
@@ -63,7 +63,7 @@ class SettingsActions(QObject):
         keys = all_keys(self._settings.preset, self._settings.keys)
         groups = {
             menu: [
-                (entry.title.rstrip("…"), ", ".join(keys[entry.name]))
+                (entry.words, ", ".join(keys[entry.name]))
                 for entry in ACTIONS
                 if entry.menu == menu and keys[entry.name]
             ]

@@ -20,6 +20,7 @@ class Action:
     keys : shortcuts
     short : text on the toolbar, empty where it is not there
     checkable : whether it is on or off
+    submenu : the menu within that menu, empty where it is not in one
     twin : the command that does the same from a shell, or why there is none
     """
 
@@ -30,6 +31,16 @@ class Action:
     short: str = ""
     checkable: bool = False
     twin: str = "only moves what is on screen"
+    submenu: str = ""
+
+    @property
+    def words(self) -> str:
+        """The title where no menu is around it: in lists of keys."""
+        title = self.title.rstrip("…")
+        return f"{self.submenu}: {title}" if self.submenu else title
+
+
+OTHER_HEAD = "Show on another head"
 
 
 ACTIONS: tuple[Action, ...] = (
@@ -45,7 +56,6 @@ ACTIONS: tuple[Action, ...] = (
     Action("locate_media", "Locate missing sound or video…", "File", twin="commands play nothing"),
     Action("attach_visemes", "Attach visemes…", "File", twin="retake fill --visemes"),
     Action("show_import", "How this take was read", "File", checkable=True, twin="retake info"),
-    Action("load_character", "Show on another head…", "File", twin="retake render --character"),
     Action("quit", "Quit", "File", ("Ctrl+Q",), twin="ends the program"),
     Action("undo", "Undo", "Edit", ("Ctrl+Z",), "↶", twin="a command writes a new file; the old one stays"),
     Action("redo", "Redo", "Edit", ("Ctrl+Shift+Z", "Ctrl+Y"), "↷", twin="a command writes a new file"),
@@ -53,7 +63,7 @@ ACTIONS: tuple[Action, ...] = (
     Action("hit_exactly", "Hit the curve exactly", "Edit", ("Shift+E",), checkable=True, twin="retake edit --exact"),
     Action("go_there", "Reach it all the same", "Edit", ("Shift+F",), twin="retake edit --exact"),
     Action("again", "Apply to the last edit", "Edit", ("Ctrl+R",), twin="retake edit"),
-    Action("cancel", "Drop what is under way", "Edit", ("Escape",), twin="Ctrl+C"),
+    Action("cancel", "Cancel", "Edit", ("Escape",), twin="Ctrl+C"),
     Action("wider_brush", "Wider brush", "Edit", ("]",), twin="retake edit --frames"),
     Action("narrower_brush", "Narrower brush", "Edit", ("[",), twin="retake edit --frames"),
     Action("copy", "Copy", "Edit", ("Ctrl+C",), twin="works with paste in the window"),
@@ -81,14 +91,15 @@ ACTIONS: tuple[Action, ...] = (
     Action("retarget_tool", "Retarget", "Tools", ("T",), "Retarget", True, twin="retake retarget"),
     Action("smooth", "Smooth", "Tools", ("Ctrl+B",), twin="retake smooth"),
     Action("show_removed", "Show what Clean removes", "View", ("Shift+R",), checkable=True, twin="retake clean --json"),
-    Action("open_markers", "Carry a capture's markers…", "Retarget", twin="retake retarget MARKERS"),
-    Action("choose_target", "Carry to a head…", "Retarget", twin="retake retarget --character"),
-    Action("choose_target_folder", "Carry to a folder of OBJ files…", "Retarget", twin="retake character import"),
-    Action("own_target", "Carry to Retake's own head", "Retarget", twin="retake retarget without --character"),
+    Action("open_markers", "Retarget a capture's markers…", "Retarget", twin="retake retarget MARKERS"),
+    Action("choose_target", "Choose a head…", "Retarget", twin="retake retarget --character"),
+    Action("choose_target_folder", "Choose a folder of OBJ files…", "Retarget", twin="retake character import"),
+    Action("own_target", "Retarget to the Retake head", "Retarget", twin="retake retarget without --character"),
+    Action("second_target", "Retarget to the second head", "Retarget", twin="retake retarget --character second"),
     Action("carry", "Solve the whole take", "Retarget", ("Ctrl+Return",), twin="retake retarget"),
     Action("stop_carrying", "Stop solving", "Retarget", twin="Ctrl+C"),
-    Action("keep_carried", "Keep what was solved", "Retarget", ("Ctrl+Shift+Return",), twin="retake retarget -o"),
-    Action("drop_carried", "Drop what was solved", "Retarget", twin="a command writes a new file"),
+    Action("keep_carried", "Keep the result", "Retarget", ("Ctrl+Shift+Return",), twin="retake retarget -o"),
+    Action("drop_carried", "Discard the result", "Retarget", twin="a command writes a new file"),
     Action("suggest_labels", "Suggest frames to label", "Retarget", twin="helps to label in the window"),
     Action("label_frame", "Label this frame", "Retarget", ("Ctrl+K",), twin="retake retarget --labels"),
     Action("unlabel_frame", "Remove the label of this frame", "Retarget", twin="retake retarget --labels"),
@@ -113,18 +124,26 @@ ACTIONS: tuple[Action, ...] = (
     Action(
         "dismiss_flag", "Dismiss the finding here…", "Review", ("X",), twin="retake check leaves out what was dismissed"
     ),
-    Action("restore_flag", "Count the finding here again", "Review", ("Shift+X",), twin="retake check"),
-    Action("flag_settings", "What is looked for…", "Review", twin="retake check goes by the project's own"),
+    Action("restore_flag", "Restore the finding here", "Review", ("Shift+X",), twin="retake check"),
+    Action("flag_settings", "Flag settings…", "Review", twin="retake check goes by the project's own"),
     Action("compare_take", "Compare with another take…", "Review", twin="retake review BEFORE AFTER"),
     Action(
-        "offset_later", "The take before a frame later", "Review", ("Ctrl+Alt+Right",), twin="retake review --offset"
+        "offset_later",
+        "Move the first take a frame later",
+        "Review",
+        ("Ctrl+Alt+Right",),
+        twin="retake review --offset",
     ),
     Action(
-        "offset_earlier", "The take before a frame earlier", "Review", ("Ctrl+Alt+Left",), twin="retake review --offset"
+        "offset_earlier",
+        "Move the first take a frame earlier",
+        "Review",
+        ("Ctrl+Alt+Left",),
+        twin="retake review --offset",
     ),
     Action("open_queue", "Open a folder of pairs…", "Review", ("Ctrl+Shift+O",), twin="retake review --queue"),
     Action("next_take", "Next take of the queue", "Review", ("Ctrl+PgDown",), twin="retake review --queue"),
-    Action("previous_take", "Take before in the queue", "Review", ("Ctrl+PgUp",), twin="retake review --queue"),
+    Action("previous_take", "Previous take of the queue", "Review", ("Ctrl+PgUp",), twin="retake review --queue"),
     Action("approve", "Approve", "Review", ("Ctrl+Shift+A",), twin="a verdict belongs to a project"),
     Action("send_back", "Needs work…", "Review", ("Ctrl+Shift+W",), twin="a verdict belongs to a project"),
     Action("write_report", "Write a report…", "Review", ("Ctrl+Shift+E",), twin="retake review -o REPORT.html"),
@@ -152,14 +171,17 @@ ACTIONS: tuple[Action, ...] = (
     Action("set_in", "Selection begins here", "Playback", ("I",), twin="--frames A:B"),
     Action("set_out", "Selection ends here", "Playback", ("O",), twin="--frames A:B"),
     Action("clear_selection", "Clear selection", "Playback", ("Ctrl+D",), twin="--frames A:B"),
-    Action("view_before", "See the face as recorded", "View", ("1",), checkable=True, twin="retake render"),
-    Action("view_after", "See the face as edited", "View", ("2",), checkable=True, twin="retake render"),
-    Action("view_wipe", "See both, parted by a line", "View", ("3",), checkable=True, twin="retake render --compare"),
-    Action("wipe_left", "The line to the left", "View", ("Ctrl+[",)),
-    Action("wipe_right", "The line to the right", "View", ("Ctrl+]",)),
-    Action("view_split", "See both side by side", "View", ("4",), checkable=True, twin="retake render --compare"),
-    Action("view_difference", "See where they differ", "View", ("5",), checkable=True),
+    Action("view_before", "Show the recorded face", "View", ("1",), checkable=True, twin="retake render"),
+    Action("view_after", "Show the edited face", "View", ("2",), checkable=True, twin="retake render"),
+    Action("view_wipe", "Show both with a wipe", "View", ("3",), checkable=True, twin="retake render --compare"),
+    Action("wipe_left", "Move the wipe left", "View", ("Ctrl+[",)),
+    Action("wipe_right", "Move the wipe right", "View", ("Ctrl+]",)),
+    Action("view_split", "Show both side by side", "View", ("4",), checkable=True, twin="retake render --compare"),
+    Action("view_difference", "Show the difference", "View", ("5",), checkable=True),
     Action("frame_head", "Look at the whole head from the front", "View"),
+    Action("own_head", "Retake head", "View", twin="retake render without --character", submenu=OTHER_HEAD),
+    Action("second_head", "Second head", "View", twin="retake render --character second", submenu=OTHER_HEAD),
+    Action("load_character", "From a file…", "View", twin="retake render --character", submenu=OTHER_HEAD),
     Action("frame_all", "Show the whole take", "View", ("Home",)),
     Action("zoom_in", "Zoom in", "View", ("Ctrl+=", "=")),
     Action("zoom_out", "Zoom out", "View", ("Ctrl+-", "-")),
@@ -173,7 +195,6 @@ ACTIONS: tuple[Action, ...] = (
 LINES = frozenset(
     {
         "attach_audio",
-        "load_character",
         "quit",
         "close_here",
         "copy",
@@ -223,7 +244,7 @@ CONTEXT: dict[str, tuple[str, ...]] = {
             "view_difference",
             "",
             "frame_head",
-            "load_character",
+            *("own_head", "second_head", "load_character"),
             "",
         ),
         *("pin_tool", "note", "draw_mark", "", "play"),

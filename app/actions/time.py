@@ -19,7 +19,7 @@ class TimeActions(QObject):
     session, transport, filling : what they work on; while a fill is chosen, the arrows go through its variants
     """
 
-    told = Signal(str)  # what is wrong where one went
+    message = Signal(str)  # what is wrong where one went
 
     def __init__(self, session: Session, transport: Transport, filling: Filling) -> None:
         super().__init__()
@@ -103,7 +103,7 @@ class TimeActions(QObject):
             self._session.view.select(None)  # else playing from the flag would leap back into the selection
         self._session.view.move_playhead(frame)
         found = [flag for flag in self._session.document.flags or () if flag.start == frame]
-        self.told.emit(max(found, key=lambda flag: flag.weight).sentence if found else "")
+        self.message.emit(max(found, key=lambda flag: flag.weight).sentence if found else "")
 
     def set_in(self) -> None:
         """Let the selection begin at the playhead."""

@@ -1,4 +1,4 @@
-"""The actions that choose how the face is looked at; none changes the take."""
+"""The actions that change the preview's view; none changes the take."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class CleanSection(Section):
         self.preview_button, self.keep_button, self.drop_button = (
             QPushButton("Preview"),
             QPushButton("Clean"),
-            QPushButton("Drop"),
+            QPushButton("Discard"),
         )
         self.keep_button.setProperty("primary", True)
         self.side_by_side(self.preview_button, self.keep_button, self.drop_button)

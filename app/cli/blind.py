@@ -27,9 +27,9 @@ def make(
 
     sheet = exhibits(pieces_to_measure(data), seed=seed, count=count)
     out.mkdir(parents=True, exist_ok=True)
-    for one in sheet:
-        movie.write_movie([one.take], out / f"{one.name}.mp4", height=size)
-    write_bytes(out / "answers.csv", ["".join(["movie,answer\n", *(f"{one.name},\n" for one in sheet)]).encode()])
+    for row in sheet:
+        movie.write_movie([row.take], out / f"{row.name}.mp4", height=size)
+    write_bytes(out / "answers.csv", ["".join(["movie,answer\n", *(f"{row.name},\n" for row in sheet)]).encode()])
     write_bytes(key, [key_of(sheet).encode()])
     say(f"wrote {counted(len(sheet), 'movie')} and answers.csv to {out}; the key is {key}")
 

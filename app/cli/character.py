@@ -16,7 +16,7 @@ from engine.errors import EditError
 from engine.words import counted
 
 if TYPE_CHECKING:
-    from app.cli.performance import Carried
+    from app.cli.performance import MarkedPerformance
     from engine.character import Character
     from engine.formats.characters.assemble import Import
 
@@ -42,23 +42,23 @@ def import_(
     landmarks: Landmarks = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Make a character of another program's head, and show what each of its shapes was taken for."""
+    """Import a head of another program as a character, and list the meaning of each of its shapes."""
     from app.cli.tables import show
     from engine.character import save
 
-    made = imported(path, unit=unit, up=up, facing=facing, names=names or [], landmarks=landmarks or [])
-    save(made.character, out)
+    read = imported(path, unit=unit, up=up, facing=facing, names=names or [], landmarks=landmarks or [])
+    save(read.character, out)
     if as_json:
-        print_json(_summary(made))
+        print_json(_summary(read))
         return
     rows = [
         {"in the file": row.source, "shape": row.shape if row.sure else "", "how": row.how, "likeness": row.likeness}
-        for row in made.matches
+        for row in read.matches
     ]
     show(path.name, rows, as_json=False)
-    for notice in made.notices:
+    for notice in read.notices:
         say(notice)
-    say(f"Imported {counted(len(made.character.neutral), 'vertex', 'vertices')}. Written to {out}.")
+    say(f"Imported {counted(len(read.character.neutral), 'vertex', 'vertices')}. Written to {out}.")
 
 
 def landmarks_(
@@ -67,7 +67,7 @@ def landmarks_(
     landmarks: Landmarks = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Find the landmarks of a character anew, led by those that were placed by hand."""
+    """Find the landmarks of a character again, from those that were placed by hand."""
     from app.cli.tables import show
     from engine.character import save
     from engine.formats.characters.landmarks import with_landmarks
@@ -100,18 +100,18 @@ def imported(
     return import_head(path, Reading(unit or "", up or "", facing, pairs(list(names))), places)
 
 
-def _summary(made: Import) -> dict[str, object]:
+def _summary(read: Import) -> dict[str, object]:
     return {
-        "vertices": len(made.character.neutral),
-        "unit": made.frame.unit,
-        "up": made.frame.up,
-        "facing_deg": made.frame.facing_deg,
+        "vertices": len(read.character.neutral),
+        "unit": read.frame.unit,
+        "up": read.frame.up,
+        "facing_deg": read.frame.facing_deg,
         "shapes": [
-            {"source": row.source, "shape": row.shape, "likeness": row.likeness, "how": row.how} for row in made.matches
+            {"source": row.source, "shape": row.shape, "likeness": row.likeness, "how": row.how} for row in read.matches
         ],
-        "landmarks": made.character.landmarks,
-        "landmark_mm": made.landmark_mm,
-        "notices": list(made.notices),
+        "landmarks": read.character.landmarks,
+        "landmark_mm": read.landmark_mm,
+        "notices": list(read.notices),
     }
 
 
@@ -163,8 +163,8 @@ def _head(path: Path, *, unit: str | None, up: str | None, facing: float | None)
     return character_of(path, Reading(unit or "", up or "", facing))
 
 
-def _followed(head: Character, performance: Carried, points: Path | None) -> dict[str, int]:
-    """Return which vertex of a head follows which marker, by a file or by what the markers were taken for."""
+def _followed(head: Character, performance: MarkedPerformance, points: Path | None) -> dict[str, int]:
+    """Return the vertex of each marker on a head, from a file or from the markers' landmarks."""
     from engine import editing
     from engine.formats.markers import layout as markers_layout
 

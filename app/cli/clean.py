@@ -153,8 +153,8 @@ def _tell(listener: Listener, seconds: float | None, spool: Spool | None, *, as_
         listener.frames()
         latency = None if status.latency_p95_ms != status.latency_p95_ms else round(status.latency_p95_ms, 3)
         if as_json:
-            told = {"subjects": status.subjects, "frames": status.frames, "drops": status.drops}
-            print_json({**told, "latency_p95_ms": latency})
+            counts = {"subjects": status.subjects, "frames": status.frames, "drops": status.drops}
+            print_json({**counts, "latency_p95_ms": latency})
         else:
             drops = ", ".join(f"{count} {reason}" for reason, count in status.drops.items()) or "none dropped"
             late = "" if latency is None else f", p95 {latency} ms"

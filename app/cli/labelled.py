@@ -9,7 +9,7 @@ from engine.errors import EditError
 from engine.words import counted
 
 if TYPE_CHECKING:
-    from app.cli.performance import Carried
+    from app.cli.performance import MarkedPerformance
     from engine.character import Character
     from engine.editing import Performance
     from engine.formats.labels import LabelFile
@@ -32,7 +32,7 @@ def suggest(performance: Performance, count: int, labels: Path | None) -> list[i
     return suggest_frames(performance, count, known)
 
 
-def retarget(performance: Carried, character: Path | None, labels: Path | None) -> tuple[Take, Character]:
+def retarget(performance: MarkedPerformance, character: Path | None, labels: Path | None) -> tuple[Take, Character]:
     """Return the take that the labels make of a performance, and the head it is for; raises `EngineError`."""
     from engine.character import bundled
     from engine.editing import LabelRequest, RetargetRequest, retarget_from_labels

@@ -1,4 +1,4 @@
-"""What every command that writes files has in common: it never writes over what it reads, unless told to."""
+"""Guards the output files of every command: none overwrites what it reads, unless an option allows it."""
 
 from __future__ import annotations
 

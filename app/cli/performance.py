@@ -1,4 +1,4 @@
-"""What `retake retarget` and `retake drive` carry: a take, or markers with what each of them was taken for."""
+"""The source of `retake retarget` and `retake drive`: a take, or markers with the landmark of each."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ if TYPE_CHECKING:
     from engine.editing import Performance
     from engine.formats.characters.marker_table import MarkerTable
 
-MARKER_HELP = "For markers: correct what one was taken for, its name=a landmark; name= leaves it out."
+MARKER_HELP = "For markers: correct the landmark of one, its name=a landmark; name= leaves it out."
 
 
 @dataclass(frozen=True, eq=False)
-class Carried:
-    """A performance on its way to another head.
+class MarkedPerformance:
+    """A performance to be retargeted.
 
     Attributes
     ----------
     performance : a take on the bundled head, or a capture
-    table : what each marker of a capture was taken for; none for a take
+    table : the landmark of each marker of a capture; none for a take
     """
 
     performance: Performance
     table: MarkerTable | None = None
 
     def places(self, head: Character) -> dict[str, int]:
-        """Return which vertex of a head carries which marker; none for a take, whose markers are the standard ones."""
+        """Return the vertex of each marker on a head; none for a take, whose markers are the standard ones."""
         from engine.formats.characters.marker_places import places_on
 
         if self.table is None:
@@ -44,13 +44,13 @@ class Carried:
         return places_on(head, source.neutral, source.names, self.table)
 
     def show(self) -> None:
-        """Print what each marker was taken for, where that was not told by its name alone."""
+        """Print the landmark of each marker, where its name alone does not say it."""
         from app.cli.tables import show
 
         if self.table is None or all(row.how == "by name" for row in self.table.rows):
             return
         rows = [
-            {"marker": row.marker, "taken for": row.landmark or "a place of its own", "how": row.how, "mm": row.away_mm}
+            {"marker": row.marker, "landmark": row.landmark or "a place of its own", "how": row.how, "mm": row.away_mm}
             for row in self.table.rows
         ]
         show("Markers", rows, as_json=False)
@@ -65,7 +65,7 @@ def performance_of(
     unit: str | None = None,
     marker: Sequence[str] | None = None,
     placed: bool = False,
-) -> Carried:
+) -> MarkedPerformance:
     """Read a take or a capture; raises `EngineError`.
 
     Parameters
@@ -87,16 +87,16 @@ def performance_of(
     if path.suffix.lower() not in markers.ENDINGS or is_take(path):
         if changes:
             raise EditError("A take has no markers to correct.", "Leave out --marker.")
-        return Carried(Performance(open_take(path, fps, sides), bundled()))
+        return MarkedPerformance(Performance(open_take(path, fps, sides), bundled()))
     capture = markers.read(path, unit=unit, fps=fps)
     if not 0 <= neutral < len(capture):
         raise EditError(f"Frame {neutral} is not within the capture, which has {counted(len(capture), 'frame')}.")
     if placed:
         source = capture_of(capture, neutral_frame=neutral)
-        return Carried(Performance(source.take, bundled(), source))
+        return MarkedPerformance(Performance(source.take, bundled(), source))
     table = match_markers(capture.positions[neutral], capture.names).corrected(changes)
     source = capture_of(capture, neutral_frame=neutral, turn=table.turn, landmarks=table.landmarks)
-    return Carried(Performance(source.take, bundled(), source), table)
+    return MarkedPerformance(Performance(source.take, bundled(), source), table)
 
 
 def is_take(path: Path) -> bool:

@@ -22,15 +22,15 @@ PERCENT, TENTH = 1, 10
 
 
 def telling(what: str, shown: bool | None) -> Callable[[int, int], None]:
-    """Return what is called with how much is done and of how much, and tells it in percent: ``drawing: 10 %``."""
+    """Return a function of the amount done and the whole that prints the share in percent: ``drawing: 10 %``."""
     step = PERCENT if shown else TENTH if shown is None and sys.stderr.isatty() else 0
-    told = 0
+    last_percent = 0
 
     def tell(done: int, of: int) -> None:
-        nonlocal told
+        nonlocal last_percent
         percent = 100 * done // max(1, of)
-        if step and percent >= told + step:
-            told = percent - percent % step
-            remark(f"{what}: {told} %")
+        if step and percent >= last_percent + step:
+            last_percent = percent - percent % step
+            remark(f"{what}: {last_percent} %")
 
     return tell

@@ -43,7 +43,10 @@ def render(
         Path | None, typer.Option(help="The sound; a project's own, or the file beside a take, without.")
     ] = None,
     audio_offset: Annotated[float, typer.Option(help="Second of the take at which that sound begins.")] = 0.0,
-    character: Annotated[Path | None, typer.Option(help="A head to draw it on; the bundled one without.")] = None,
+    character: Annotated[
+        Path | None,
+        typer.Option(help="A head to draw it on, or second; the Retake head without."),
+    ] = None,
     size: Annotated[int, typer.Option(help="Height of the faces in pixels.", min=64, max=4096)] = 720,
     codec: Annotated[
         str | None, typer.Option(help="Of a movie: av1, vp9, mpeg4, or h264 for players that know nothing else.")
@@ -114,7 +117,7 @@ def _captions(shown: tuple[Take, ...], noted: Opened, *, difference: bool) -> Ca
 
 
 def _sound(noted: Opened, named: Path | None, offset_s: float) -> Soundtrack | None:
-    """Return what is heard; a recording that nobody named and that cannot be read is told about and left out."""
+    """Return the sound; a recording that was found beside the take and cannot be read is reported and left out."""
     from app.preview.soundtrack import Soundtrack
     from engine.formats.audio import read
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli import labelled
-from app.cli.performance import MARKER_HELP, Carried, performance_of
+from app.cli.performance import MARKER_HELP, MarkedPerformance, performance_of
 from app.cli.reading import AUTOMATIC, SAME, Fps, ReadSides, WrittenSides, open_take, save_take
 from app.printing import say
 from engine.errors import EditError
@@ -61,9 +61,9 @@ def pin(
         named = {**dict(zip(SHAPES, pose.tolist(), strict=True)), **named}
     if not named:
         raise EditError("The pin has no pose.", "Name weights with --weights or controls with --control.")
-    held = None if closure is None else _strength("closure", closure)
+    strength = None if closure is None else _strength("closure", closure)
     chosen = editing.parse_frames(frames, source)
-    asked = editing.PinRequest({frame: named}, chosen, whole=not free, closure=held)
+    asked = editing.PinRequest({frame: named}, chosen, whole=not free, closure=strength)
     save_take(editing.pin(source, asked).apply(source), out, write_sides)
     say(f"Pinned frame {frame} of {source.name}; frames {frames} changed. Written to {out}.")
 
@@ -76,7 +76,10 @@ def retarget(
     ] = Method.SPACETIME,
     labels: Annotated[Path | None, typer.Option(help=labelled.LABEL_HELP)] = None,
     suggest: Annotated[int | None, typer.Option(help=labelled.SUGGEST_HELP)] = None,
-    character: Annotated[Path | None, typer.Option(help="The character to move; the bundled head otherwise.")] = None,
+    character: Annotated[
+        Path | None,
+        typer.Option(help="The head to move, or second; the Retake head without."),
+    ] = None,
     landmarks: Annotated[
         Path | None, typer.Option(help="Which vertex carries which marker: a CSV of marker,vertex.")
     ] = None,
@@ -91,7 +94,7 @@ def retarget(
     write_sides: WrittenSides = SAME,
     marker: Annotated[list[str] | None, typer.Option("--marker", help=MARKER_HELP)] = None,
 ) -> None:
-    """Carry markers or a take to another character."""
+    """Retarget markers or a take to another head."""
     _require_sense(method, labelled=labels is not None or suggest is not None, out=out, suggests=suggest is not None)
     performance = performance_of(
         source, neutral=neutral, unit=unit, fps=fps, sides=sides, marker=marker, placed=landmarks is not None
@@ -102,18 +105,18 @@ def retarget(
     assert out is not None
     performance.show()
     if method is Method.MANIFOLD:
-        made, target = labelled.retarget(performance, character, labels)
+        retargeted, target = labelled.retarget(performance, character, labels)
     else:
         matching = _matching(alpha=alpha, beta=beta, closure=closure, unbounded=unbounded)
-        made, target = _carried(performance, character, landmarks, matching)
-    save_take(made, out, write_sides)
-    for notice in made.notices:
+        retargeted, target = _retargeted(performance, character, landmarks, matching)
+    save_take(retargeted, out, write_sides)
+    for notice in retargeted.notices:
         say(notice)
-    say(f"Moved {target.name} by {counted(len(made), 'frame')} of {source.name}. Written to {out}.")
+    say(f"Moved {target.name} by {counted(len(retargeted), 'frame')} of {source.name}. Written to {out}.")
 
 
 def _require_sense(method: Method, *, labelled: bool, out: Path | None, suggests: bool) -> None:
-    """Raise `EditError` where the options do not go together: better told before the work than after it."""
+    """Raise `EditError` where the options do not go together: before the work starts rather than after it."""
     from engine.formats import format_of
 
     if method is not Method.MANIFOLD and labelled:
@@ -136,8 +139,8 @@ def _matching(*, alpha: float | None, beta: float | None, closure: float | None,
     )
 
 
-def _carried(
-    performance: Carried, character: Path | None, landmarks: Path | None, matching: Matching
+def _retargeted(
+    performance: MarkedPerformance, character: Path | None, landmarks: Path | None, matching: Matching
 ) -> tuple[Take, Character]:
     from engine import editing
     from engine.character import bundled

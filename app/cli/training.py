@@ -1,4 +1,4 @@
-"""`retake train` and `retake build`: making the networks and the bundled assets anew."""
+"""`retake train` and `retake build`: train the networks and build the bundled assets."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.cli.listing import listing
 from app.printing import say
 from engine.errors import EngineError
 
-ASSETS = ("demo", "head")
+ASSETS = ("demo", "head", "second-head")
 
 
 def train(
@@ -28,7 +28,7 @@ def train(
 
 
 def build(name: Annotated[str, typer.Argument(help=f"Which asset: {', '.join(ASSETS)}.")]) -> None:
-    """Rebuild a bundled asset: the head, or the demo take."""
+    """Rebuild a bundled asset: a head, or the demo take."""
     if name == "demo":
         from engine.lab.performer import demo
 
@@ -37,6 +37,10 @@ def build(name: Annotated[str, typer.Argument(help=f"Which asset: {', '.join(ASS
         from engine.lab.modelling import head
 
         head.build()
+    elif name == "second-head":
+        from engine.lab.sculpting import head as second
+
+        second.build()
     else:
         raise EngineError(f"There is no asset called {name!r}.", f"Assets are: {', '.join(ASSETS)}.")
 

@@ -61,7 +61,7 @@ def draw_removed(lanes: Sequence[Lane], session: Session) -> None:
 
 
 def draw_differences(lanes: Sequence[Lane], session: Session) -> None:
-    """Draw how much each curve differs from the take before, while somebody reviews it."""
+    """Draw how much each curve differs from the take before, during a review."""
     document, view = session.document, session.view
     if not _reviewed(session):
         return
@@ -72,7 +72,7 @@ def draw_differences(lanes: Sequence[Lane], session: Session) -> None:
 
 
 def tell_differences(lanes: Sequence[Lane], session: Session) -> None:
-    """Tell how much each curve differs at the playhead, while somebody reviews it."""
+    """Show how much each curve differs at the playhead, during a review."""
     if _reviewed(session):
         for lane in lanes:
             lane.tell_difference(session.view.playhead)

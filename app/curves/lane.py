@@ -118,7 +118,7 @@ class Lane:
         self.view.setGeometry(box)
         self.gutter.setGeometry(QRectF(0.0, box.top(), GUTTER_PX, box.height()))
 
-    def put_away(self) -> None:
+    def hide_plots(self) -> None:
         """Take it off the screen, to be shown again; what it drew is not kept up to date meanwhile."""
         self.view.hide()
         self.gutter.hide()
@@ -217,7 +217,7 @@ class Lane:
         return self._difference[1]
 
     def draw_difference(self, visible: tuple[int, int], frame: int) -> None:
-        """Draw at the foot of the lane how much its curve differs, and tell how much at a frame."""
+        """Draw at the foot of the lane how much its curve differs, and write the difference at a frame."""
         assert self._difference is not None
         _, curve, full = self._difference
         if not full:
@@ -228,7 +228,7 @@ class Lane:
         self.tell_difference(frame)
 
     def tell_difference(self, frame: int) -> None:
-        """Tell by how much the curve differs at a frame."""
+        """Write by how much the curve differs at a frame."""
         _, curve, full = self._difference or (None, np.zeros(0), 0.0)
         if not full:
             return

@@ -38,7 +38,7 @@ class Overlay(QGraphicsItem):
         return self._area()
 
     def moved(self) -> None:
-        """Draw anew where the lanes are by now."""
+        """Draw again at the lanes' current places."""
         self.prepareGeometryChange()
         self.update()
 

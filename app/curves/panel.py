@@ -111,7 +111,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
     def _on_change(self, change: Change) -> None:
         kinds = Change
         for cause, step in (
-            (kinds.TAKE | kinds.LANES, self._let_go),
+            (kinds.TAKE | kinds.LANES, self._cancel_gesture),
             (kinds.TAKE | kinds.LANES, self._lay_lanes),
             (kinds.TAKE | kinds.LANES | kinds.CURVES, partial(self._draw, take_curves)),
             (kinds.TAKE | kinds.LANES | kinds.LANE, self._arrange),
@@ -145,7 +145,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
         self._underlay.update()
         self._playhead.update()
 
-    def _let_go(self) -> None:
+    def _cancel_gesture(self) -> None:
         """Drop a gesture whose take or lane is gone: it may not be there any more."""
         if self.tool.busy:
             self.tool.cancel()
@@ -238,7 +238,7 @@ class CurvesPanel(pg.GraphicsView):  # type: ignore[misc]
     # --- the mouse
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Give the press to the tool; the middle button pans; nothing moves under the pointer until it is let go."""
+        """Pass the press to the tool; the middle button pans; the lanes do not scroll until the button is released."""
         self._growth.hold()
         if event.button() == Qt.MouseButton.MiddleButton:
             self._pan_from = (event.position(), self.session.view.range)

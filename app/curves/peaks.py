@@ -54,13 +54,13 @@ class Thinned:
         self._blocks: tuple[Array, Array] | None = None
 
     def copy(self) -> Thinned:
-        """Return another that stands for the same curve, without counting its blocks again."""
+        """Return a copy for the same curve, without counting its blocks again."""
         twin = Thinned(self._curve)
         twin._blocks = self._kept()
         return twin
 
     def stands_for(self, curve: Array) -> bool:
-        """Whether this stands for the very same values in memory."""
+        """Return whether these are the peaks of the very same array in memory."""
         return curve.shape == self._curve.shape and curve.__array_interface__ == self._curve.__array_interface__
 
     @property

@@ -43,7 +43,7 @@ class LaneStack:
             return False
         for lane in self.shown:
             if lane.key not in keys:
-                lane.put_away()
+                lane.hide_plots()
         for key in keys:
             if key not in self.known:
                 self.known[key] = Lane(key)

@@ -53,7 +53,7 @@ class KeysDialog(QDialog):
     search : what is typed narrows the list
     table : action, menu and keys, one row for each of `rows`
     entry : the key to give to the chosen action
-    told : what was changed, or whose the key is already
+    remark : what was changed, or whose the key is already
     take : gives the key to the chosen action and takes it from the other
     reset, reset_all : go back to the preset
     """
@@ -75,7 +75,7 @@ class KeysDialog(QDialog):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.resize(WIDTH_PX, HEIGHT_PX)
         self.search, self.table, self.entry = QLineEdit(), QTableWidget(len(self._rows), 3), QKeySequenceEdit()
-        self.told = quiet("Choose an action, then press its new key.")
+        self.remark = quiet("Choose an action, then press its new key.")
         self.take, self.remove = QPushButton("Use it here instead"), QPushButton("No key")
         self.reset, self.reset_all = QPushButton("Reset"), QPushButton("Reset all")
         self._lay_out()
@@ -113,7 +113,7 @@ class KeysDialog(QDialog):
         column.addWidget(self.search)
         column.addWidget(self.table, 1)
         column.addLayout(first)
-        column.addWidget(self.told)
+        column.addWidget(self.remark)
         column.addLayout(last)
 
     def _connect(self) -> None:
@@ -156,7 +156,7 @@ class KeysDialog(QDialog):
         if other is None:
             self._give(key)
         else:
-            self.told.setText(f"{key} is used by {other.title}.")
+            self.remark.setText(f"{key} is used by {other.title}.")
             self.take.show()
 
     def _give(self, key: str, taken_from: KeyRow | None = None) -> None:
@@ -186,10 +186,10 @@ class KeysDialog(QDialog):
     def _reset_all(self) -> None:
         self._put({}, f"All keys are as in the preset {self._settings.preset}.")
 
-    def _put(self, own: dict[str, tuple[str, ...]], told: str) -> None:
+    def _put(self, own: dict[str, tuple[str, ...]], remark: str) -> None:
         self._settings.keys = own
         self.take.hide()
-        self.told.setText(told)
+        self.remark.setText(remark)
         self._show_keys()
         self.changed.emit()
 

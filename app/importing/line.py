@@ -79,7 +79,7 @@ class ImportLine(QFrame):
         row.addWidget(self.notices, 1)
         row.addWidget(self.hide_button)
 
-    def tell(self, imported: Imported | None, *, shown: bool) -> None:
+    def show_reading(self, imported: Imported | None, *, shown: bool) -> None:
         """Say what the file of the open take says of itself, and show it where there is anything."""
         self._imported = imported
         self._show()
@@ -94,7 +94,7 @@ class ImportLine(QFrame):
 
     def _on_change(self, change: Change) -> None:
         if change & Change.TAKE:
-            self.tell(None, shown=False)
+            self.show_reading(None, shown=False)
         elif change & Change.READING:
             self._show()
 
@@ -123,7 +123,7 @@ class ImportLine(QFrame):
             (self.sides_reason, sides),
         ):
             widget.setToolTip(f"{text[0].upper()}{text[1:]}.")
-        self.notices.tell(take.notices)
+        self.notices.show_sentences(take.notices)
 
     def _confidence(self, reason: str) -> str:
         judged = self._imported.judged if self._imported is not None else None
@@ -186,7 +186,7 @@ class _Elided(Label):
         self.setProperty("quiet", True)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
 
-    def tell(self, sentences: Sequence[str]) -> None:
+    def show_sentences(self, sentences: Sequence[str]) -> None:
         """Show sentences."""
         self._text = plain(" ".join(sentences))
         self.setToolTip(tip("\n".join(sentences)))

@@ -27,9 +27,9 @@ class FactsSection(Section):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session, "This edit")
-        self.told, self.facts = Label(), quiet("")
-        self.told.setWordWrap(True)
-        self.column.addWidget(self.told)
+        self.outcome, self.facts = Label(), quiet("")
+        self.outcome.setWordWrap(True)
+        self.column.addWidget(self.outcome)
         self.column.addWidget(self.facts)
         self.again_button = QPushButton("Apply to the last edit")
         self.again_button.setToolTip(
@@ -51,20 +51,20 @@ class FactsSection(Section):
         if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.TOOL):
             self._show()
         elif change & Change.PLAYHEAD:
-            self._tell()
+            self._show_outcome()
 
-    def _tell(self) -> None:
+    def _show_outcome(self) -> None:
         """Say what came of the edit where the playhead is."""
-        told, held_back = self._told_of(self._step())
-        self.told.setText("\n".join(told))
-        self.told.setVisible(bool(told))
+        lines, held_back = self._outcome_of(self._step())
+        self.outcome.setText("\n".join(lines))
+        self.outcome.setVisible(bool(lines))
         self.reach_button.setVisible(self.session.document.draft is None and held_back)
 
     def _show(self, *_: int) -> None:
         session, step = self.session, self._step()
-        made = step.edit.inputs["believability"] if step is not None else session.view.believability
-        self.again_button.setVisible(session.document.draft is None and made != session.view.believability)
-        self._tell()
+        used = step.edit.inputs["believability"] if step is not None else session.view.believability
+        self.again_button.setVisible(session.document.draft is None and used != session.view.believability)
+        self._show_outcome()
         self.facts.setText(self._counts())
 
     def _step(self) -> EditCommand | None:
@@ -72,19 +72,19 @@ class FactsSection(Section):
         step = self.session.document.undo.command(self.session.document.undo.index() - 1)
         return step if isinstance(step, EditCommand) and step.asked is not None else None
 
-    def _told_of(self, step: EditCommand | None) -> tuple[list[str], bool]:
+    def _outcome_of(self, step: EditCommand | None) -> tuple[list[str], bool]:
         """Return what to say of the edit on screen, and whether believability alone keeps it from what was asked."""
         session, draft = self.session, self.session.document.draft
         if draft is not None:
             was = session.document.controls[draft.start : draft.start + len(draft.asked)]
-            told = draft.start, draft.weights, draft.asked, draft.granted, was
-            return _told(*told, believability=session.view.believability, playhead=session.view.playhead)
+            edit = draft.start, draft.weights, draft.asked, draft.granted, was
+            return _outcome(*edit, believability=session.view.believability, playhead=session.view.playhead)
         if step is None or step.asked is None:
             return [], False
         start, asked = step.asked
         now = session.document.take.weights[start : start + len(asked)]
         believability = step.edit.inputs["believability"]
-        return _told(
+        return _outcome(
             start, now, asked, step.granted, step.before[0], believability=believability, playhead=session.view.playhead
         )
 
@@ -100,7 +100,7 @@ class FactsSection(Section):
         return f"{moved:,} of {counted(frames, 'frame')} changed, the rest is as recorded, bit for bit.\n{LEGEND}"
 
 
-def _told(
+def _outcome(
     start: int, weights: Array, asked: Array, granted: Array | None, was: Array, *, believability: float, playhead: int
 ) -> tuple[list[str], bool]:
     """Return a line for each control that an edit asked for, and whether believability alone holds one of them back.
@@ -123,9 +123,12 @@ def _told(
         rows = np.flatnonzero(wanted[:, lane])
         misses, pulled = missing[rows, lane], np.abs(asked[rows, lane] - was[rows, lane])
         row = playhead - start if here else int(rows[np.argmax(misses if misses.max() > SHORT else pulled)])
-        one = slice(row, row + 1)
+        single = slice(row, row + 1)
         found = shortfalls(
-            weights[one], asked[one], believability=believability, granted=None if granted is None else granted[one]
+            weights[single],
+            asked[single],
+            believability=believability,
+            granted=None if granted is None else granted[single],
         )
         short = next((str(each) for each in found if each.control == lane), "")
         met = f"{CURVES[lane].title} {reached[row, lane]:.1f} {CURVES[lane].unit}, as asked"

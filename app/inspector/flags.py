@@ -108,8 +108,8 @@ class FlagsSection(Section):
         if flag is None or not why:
             return  # who dismisses something says why
         self._end_dismissing()
-        told = Dismissal(flag.kind, flag.start, flag.stop, flag.weight, flag.sentence, self.author(), stamp(), why)
-        self._put((*self.session.document.marks.dismissals, told), f"dismiss: {KINDS[flag.kind]}")
+        dismissal = Dismissal(flag.kind, flag.start, flag.stop, flag.weight, flag.sentence, self.author(), stamp(), why)
+        self._put((*self.session.document.marks.dismissals, dismissal), f"dismiss: {KINDS[flag.kind]}")
 
     def _put(self, dismissals: tuple[Dismissal, ...], title: str) -> None:
         document = self.session.document
@@ -151,14 +151,14 @@ class FlagsSection(Section):
             for row, flag in enumerate(self._flags):
                 mark = "" if row < self._open else "✓ dismissed: "
                 item = QListWidgetItem(f"{timecode(flag.start / fps, fps)}  {mark}{KINDS[flag.kind]}", self.list)
-                item.setToolTip(tip(self._told(row)))
+                item.setToolTip(tip(self._sentence(row)))
         self.list.setVisible(bool(self._flags))
-        told = LOOKING if found is None else _summary(found) if found else NONE
+        summary = LOOKING if found is None else _summary(found) if found else NONE
         gone = len(document.dismissed)
-        self.count.setText(f"{told} {counted(gone, 'finding')} dismissed." if gone else told)
+        self.count.setText(f"{summary} {counted(gone, 'finding')} dismissed." if gone else summary)
         self._show_here()
 
-    def _told(self, row: int) -> str:
+    def _sentence(self, row: int) -> str:
         """Return what is wrong, and who does not mind."""
         flag = self._flags[row]
         by = dismissal_of(flag, self.session.document.marks.dismissals) if row >= self._open else None
@@ -174,10 +174,10 @@ class FlagsSection(Section):
         return sorted(here, key=lambda flag: (flag.start != frame, -flag.weight))
 
     def _show_here(self) -> None:
-        """Tell what is wrong at the playhead, the heaviest first, and mark its row."""
+        """Show what is wrong at the playhead, the most serious first, and mark its row."""
         here = [self._flags.index(flag) for flag in self._here()]
         here.sort(key=lambda row: row >= self._open)
-        self.here.setText("\n".join(self._told(row) for row in here[:2]))
+        self.here.setText("\n".join(self._sentence(row) for row in here[:2]))
         self.here.setVisible(bool(here))
         self._dismiss.setVisible(any(row < self._open for row in here))
         self._restore.setVisible(any(row >= self._open for row in here))

@@ -49,7 +49,7 @@ class MediaSection(Section):
             box.setVisible(record is not None)
             if record is not None:
                 box.show_medium(name_of(record), self.session.document.offset_s(kind), self.session.document.take.fps)
-                box.tell(beyond_the_take(self.session) if kind == "audio" else "")
+                box.show_remark(beyond_the_take(self.session) if kind == "audio" else "")
         self.needed = bool(self.session.document.marks.media)
         self.setVisible(self.needed)
 
@@ -62,7 +62,7 @@ class _Box(QWidget):
         self.kind = kind
         word = WORDS[kind]
         self.name = Label()
-        self.told = quiet("")
+        self.remark = quiet("")
         self.away = QToolButton()
         self.away.setText("✕")
         self.away.setToolTip(f"Detach the {word.lower()}")
@@ -90,12 +90,12 @@ class _Box(QWidget):
         column.setSpacing(2)
         column.addLayout(top)
         column.addLayout(bottom)
-        column.addWidget(self.told)
+        column.addWidget(self.remark)
 
-    def tell(self, text: str) -> None:
-        """Tell what should be known of the file, or nothing."""
-        self.told.setText(text)
-        self.told.setVisible(bool(text))
+    def show_remark(self, text: str) -> None:
+        """Show a remark about the file, or none."""
+        self.remark.setText(text)
+        self.remark.setVisible(bool(text))
 
     def show_medium(self, name: str, offset_s: float, fps: float) -> None:
         """Show a file's name, and when it begins."""

@@ -26,7 +26,7 @@ class SmoothSection(Section):
         self._slider = slider(5, 140)
         self.row("Cutoff", self.cutoff)
         self.column.addWidget(self._slider)
-        self.keep_button, self.drop_button = QPushButton("Apply"), QPushButton("Drop")
+        self.keep_button, self.drop_button = QPushButton("Apply"), QPushButton("Discard")
         self.side_by_side(self.keep_button, self.drop_button)
         self._slider.valueChanged.connect(self._slide)
         self.cutoff.valueChanged.connect(self.moved)

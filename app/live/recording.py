@@ -77,7 +77,7 @@ class Recording(QObject):
             self.failed.emit("The recording waits until your edits are safe.", "Else it is offered at the next start.")
 
     def save(self, *, all_rows: bool = False) -> None:
-        """Write the frames that came since; what fails is told once, until it works again."""
+        """Write the new frames; an error is reported once, until writing works again."""
         if self._spool is None:
             return
         try:

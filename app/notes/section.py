@@ -75,12 +75,12 @@ class NotesSection(Section):
         self._show()
 
     def _lay_out_chosen(self) -> None:
-        self.told = quiet("")
+        self.whole_note = quiet("")
         self.reply, self.resolve, self.remove = (QPushButton(name) for name in ("Reply", "Resolve", "Delete"))
         self.reply.clicked.connect(lambda: self.answer(self.chosen))
         self.resolve.clicked.connect(lambda: self.settle(self.chosen))
         self.remove.clicked.connect(lambda: self.delete(self.chosen))
-        self.column.addWidget(self.told)
+        self.column.addWidget(self.whole_note)
         self.side_by_side(self.reply, self.resolve, self.remove)
 
     # --- what is done with notes
@@ -192,8 +192,8 @@ class NotesSection(Section):
     def _on_change(self, change: Change) -> None:
         if change & (Change.TAKE | Change.MARKS):
             notes = self.session.document.marks.notes
-            for held in (self._changing, self._answering):
-                if held is not None and not any(each is held for each in notes):
+            for note in (self._changing, self._answering):
+                if note is not None and not any(each is note for each in notes):
                     self._take_up(None)  # it is gone: what is typed is no change of it any more
             self._show()
         if change & (Change.TAKE | Change.PLAYHEAD | Change.SELECTION):
@@ -232,8 +232,8 @@ class NotesSection(Section):
 
     def _show_chosen(self) -> None:
         note = self.chosen
-        self.told.setText("" if note is None else whole(note))
-        for widget in (self.told, self.reply, self.resolve, self.remove):
+        self.whole_note.setText("" if note is None else whole(note))
+        for widget in (self.whole_note, self.reply, self.resolve, self.remove):
             widget.setVisible(note is not None)
         self.resolve.setText("Open again" if note is not None and note.resolved else "Resolve")
 

@@ -44,7 +44,7 @@ class PinsSection(Section):
         self._weights = WeightSliders()
         self._weights.moved.connect(self._move)
         self._weights.searched.connect(self._show_sliders)
-        self.keep_button, self.drop_button = QPushButton("Pin"), QPushButton("Drop")
+        self.keep_button, self.drop_button = QPushButton("Pin"), QPushButton("Discard")
         self.keep_button.setProperty("primary", True)
         self.keep_button.setToolTip("Keep the pose and the pin")
         self.side_by_side(
@@ -90,7 +90,7 @@ class PinsSection(Section):
         )
 
     def drop(self) -> None:
-        """Let the pose spring back."""
+        """Discard the pose."""
         self._pose = {}
         self._inference.cancel()
         self._show_sliders()

@@ -1,4 +1,4 @@
-"""What time it is in the take while it plays: told by the sound that is heard, or by the wall where there is none."""
+"""The playback clock: follows the sound device, or the wall clock where there is none."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Clock(Protocol):
         """Let a moment be heard while standing still."""
 
     def close(self) -> None:
-        """Give back what is held; the clock is not used after."""
+        """Release the device; the clock is not used after."""
 
 
 class Sink(Protocol):
@@ -156,7 +156,7 @@ class AudioClock:
             self._sink.start(self._pull)
 
     def close(self) -> None:
-        """Let go of the device."""
+        """Release the device."""
         self._sink.close()
 
     def _pull(self, frames: int, heard_from: float) -> Samples | None:

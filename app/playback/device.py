@@ -97,7 +97,7 @@ class DeviceSink:
         return True
 
     def close(self) -> None:
-        """Let go of the device."""
+        """Release the device."""
         self._stream.close()
 
     def _fill(self, out: Any, frames: int, times: Any, status: Any) -> None:

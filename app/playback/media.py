@@ -120,7 +120,7 @@ class Media(QObject):
             self._push(kind, None, f"detach {project.name_of(record)}")
 
     def locate(self, kind: str, path: Path) -> None:
-        """Use a file in place of the one that is missing, with its beginning; another content is told."""
+        """Use a file in place of the missing one, at the same start; a different content is reported."""
         self._read(kind, path=path, record=self._session.document.marks.medium(kind), by_hand=True)
 
     def move(self, kind: str, offset_s: float) -> None:
@@ -170,7 +170,7 @@ class Media(QObject):
         self._choose_clock()
 
     def close(self) -> None:
-        """End the thread and let go of the loudspeaker."""
+        """End the thread and release the loudspeaker."""
         self._rest.stop()
         self._session.changed.disconnect(self._on_change)
         self.reading.stop()
@@ -200,7 +200,7 @@ class Media(QObject):
                 self._read(kind, path=path)
 
     def _follow_marks(self) -> None:
-        """Look for what the marks name, and let go of what they name no more."""
+        """Read the files that the marks name, and close those they name no more."""
         for kind in MEDIA:
             record = self._session.document.marks.medium(kind)
             content = record.sha256 if record is not None else ""
@@ -253,7 +253,9 @@ class Media(QObject):
             self._session.document.set_marks(self._session.document.marks.with_medium(wanted.kind, result.record))
         else:
             self._push(wanted.kind, result.record, f"replace {project.name_of(wanted.record)}")
-            self.failed.emit(f"{name} is not the file that was attached; it is used from now on.", "Undo goes back.")
+            self.failed.emit(
+                f"{name} is not the file that was attached; it is used from now on.", "Undo restores the old one."
+            )
 
     def _use(self, kind: str, result: _Read) -> None:
         content = result.record.sha256

@@ -15,7 +15,7 @@ FIELD_OF_VIEW_DEG = 18.0  # a portrait lens: wider ones enlarge the nose
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the head is looked at from.
+    """The camera that the head is seen from.
 
     Attributes
     ----------

@@ -85,7 +85,7 @@ class Lighting:
 
 
 def _glint(normals: Floats, view: Floats) -> Floats:
-    """Return the light mirrored in wet eyes, (n,): a face without one looks blind."""
+    """Return the light mirrored in wet eyes, (n,): eyes without one look blind."""
     half = view + EYE_LIGHT
     half /= np.sqrt(np.einsum("vx,vx->v", half, half))[:, None]
     return np.asarray(0.9 * np.clip(np.einsum("vx,vx->v", normals, half), 0.0, 1.0) ** 220, np.float32)

@@ -23,7 +23,7 @@ from app.session.edits import Editing
 from app.session.sides import Side
 from app.theme import GRID
 from app.widgets.text import Label
-from engine.character import Character, bundled
+from engine.character import bundled
 from engine.framing import framed
 from engine.project import Drawing
 from engine.take import Array
@@ -32,6 +32,7 @@ from engine.words import SENTENCE_LENGTH, plain
 VIEWS = ("Before", "After", "Wipe", "Split", "Difference")
 BUDGET_MS = 25.0  # a picture that takes longer loses its smooth edges while something moves, then half its resolution
 STILL_MS = 180
+HINT, BEFORE_HINT = "Drag to orbit · wheel to zoom", "hold B for before"
 WIDE = 0.6  # of what preview and curves share, for two heads
 STRIP_PX = (70, 88)  # one face of a strip
 STRIP_CAMERA = Camera(zoom=1.5, pan=(0.0, -0.07))
@@ -58,7 +59,6 @@ class PreviewPanel(QFrame):
         super().__init__()
         self.setProperty("panel", True)
         self._session, self._inference = session, inference
-        self._character: Character | None = None
         self._live: Array | None = None
         self._sides: tuple[Side, ...] = ()
         self._narrow: list[int] = []  # what the panels' widths were before there were two heads
@@ -103,9 +103,9 @@ class PreviewPanel(QFrame):
         self.presets.activated.connect(lambda index: self.look_from(list(PRESETS)[index]))
         row.addWidget(self.presets)
         foot = QHBoxLayout()
-        hint = Label("Drag to orbit · wheel to zoom · hold B for before")
-        hint.setProperty("quiet", True)
-        foot.addWidget(hint)
+        self.hint = Label(f"{HINT} · {BEFORE_HINT}")
+        self.hint.setProperty("quiet", True)
+        foot.addWidget(self.hint)
         foot.addStretch(1)
         foot.addWidget(self._frame_label)
         self._column = column = QVBoxLayout(self)
@@ -163,16 +163,11 @@ class PreviewPanel(QFrame):
 
     def look_from(self, name: str) -> None:
         """Look at the face from a named place."""
-        head = (self._sides[0].head if self._sides else self._character) or bundled()
+        head = (self._sides[0].head if self._sides else self._session.view.head) or bundled()
         at = {point: head.neutral[vertex].astype(float) for point, vertex in head.landmarks.items()}
         self.face.camera = looking(name, at, *framed(head))
         self.presets.setCurrentText(name)
         self.refresh(moving=False)
-
-    def show_character(self, character: Character | None) -> None:
-        """Show another head; None is the bundled one."""
-        self._character = self.face.head = character
-        self.refresh()
 
     def close_renderer(self) -> None:
         """End the render thread."""
@@ -191,7 +186,7 @@ class PreviewPanel(QFrame):
         shot = replace(self._shot(), size=size, smooth_edges=not self._coarse)
         live = self._live is not None
         view = "After" if live or self._sides else self.face.view
-        wanted = Wanted(shot, self._character, since, live=live, sides=self._sides, view=view)
+        wanted = Wanted(shot, self._session.view.head, since, live=live, sides=self._sides, view=view)
         kept = self._kept.get(wanted)
         self._from_kept = kept is not None
         if kept is not None:
@@ -205,6 +200,7 @@ class PreviewPanel(QFrame):
         """Show a live face, (52,) weights, in place of the take's; None goes back to the take."""
         self._live = weights
         self._show_frame()
+        self._show_hint()
         self.refresh(since=arrived_s)
 
     def show_sides(self, sides: tuple[Side, ...]) -> None:
@@ -212,6 +208,7 @@ class PreviewPanel(QFrame):
         self._sides = sides
         for button in self.views.values():
             button.setEnabled(not sides)
+        self._show_hint()
         self._widen(wide=len(sides) > 1)
         self.refresh()
 
@@ -228,7 +225,12 @@ class PreviewPanel(QFrame):
         """Draw faces, (52,) weights each, small and side by side; `strip_drawn` brings the picture."""
         if not self._off and faces:
             size = (STRIP_PX[0] * len(faces), STRIP_PX[1])
-            self.drawing.submit(Wanted(Shot(tuple(faces), STRIP_CAMERA, size), self._character, strip=True), "strip")
+            wanted = Wanted(Shot(tuple(faces), STRIP_CAMERA, size), self._session.view.head, strip=True)
+            self.drawing.submit(wanted, "strip")
+
+    def _show_hint(self) -> None:
+        """Say what the mouse does, and how to see the original where it can be shown."""
+        self.hint.setText(HINT if self._sides or self._live is not None else f"{HINT} · {BEFORE_HINT}")
 
     def _show_frame(self) -> None:
         self._frame_label.setText("live" if self._live is not None else f"frame {self._session.view.playhead:,}")
@@ -301,11 +303,11 @@ class PreviewPanel(QFrame):
         self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:
-        if change & Change.CHARACTER:
-            self._character = self.face.head = self._session.document.character
+        if change & Change.HEAD:
+            self.face.head = self._session.view.head
         if change & (Change.TAKE | Change.MARKS | Change.PLAYHEAD):
             self._show_noted()
-        if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.CHARACTER):
+        if change & (Change.TAKE | Change.CURVES | Change.DRAFT | Change.PLAYHEAD | Change.HEAD):
             session = self._session
             self._show_frame()
             drafted = change & Change.DRAFT and session.document.draft is not None and self._inference.busy

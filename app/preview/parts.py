@@ -1,4 +1,4 @@
-"""The parts that a head is made of, told apart by what its triangles connect."""
+"""Splits a head into its connected parts."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def eyeballs(character: Character, part: Labels) -> npt.NDArray[np.int64]:
 
 
 def _is_eyeball(points: Array) -> bool:
-    """Tell whether points, (n, 3) in mm, lie on such a ball: ``|p|^2 = 2 c p + r^2 - |c|^2``, solved for c and r."""
+    """Return whether points, (n, 3) in mm, lie on such a ball: ``|p|^2 = 2 c p + r^2 - |c|^2``, solved for c and r."""
     away = points - points.mean(axis=0)
     solved = np.linalg.lstsq(np.column_stack([2 * away, np.ones(len(away))]), (away**2).sum(axis=1))[0]
     radius = float(np.sqrt(max(solved[3] + solved[:3] @ solved[:3], 0.0)))

@@ -60,11 +60,11 @@ class View:
 def views(sides: tuple[Side, ...], camera: Camera, width: float, height: float) -> list[View]:
     """Return the view of each side on a picture that they share."""
     each = width / len(sides)
-    made = []
+    found = []
     for index, side in enumerate(sides):
         low, high = side.box or framed(side.head or character.bundled())
-        made.append(View(camera.pose(low, high, aspect=each / height), index * each, each, height))
-    return made
+        found.append(View(camera.pose(low, high, aspect=each / height), index * each, each, height))
+    return found
 
 
 def places(side: Side) -> Array:

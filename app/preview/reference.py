@@ -141,7 +141,7 @@ class ReferencePanel(QFrame):
             self.shown.show_picture(None if frame is None else frame.picture)
 
     def _refused(self, wanted: _Wanted, sentence: str, advice: str) -> None:
-        """Say what is wrong, once: the video is put away, and looked for again when the project is opened."""
+        """Report an error once: the video is closed, and read again when the project is opened."""
         if wanted.path == self._session.document.video:
             self._session.document.attach_video(None)
             self.failed.emit(sentence, advice)

@@ -28,7 +28,7 @@ class Wipe:
         self.held = False
 
     def is_at(self, x: float, width: float) -> bool:
-        """Tell whether a press at a place takes hold of the line."""
+        """Return whether a press at a place grabs the line."""
         return abs(x - self.share * width) <= NEAR_PX
 
     def move_to(self, x: float, width: float) -> None:

@@ -1,4 +1,4 @@
-"""The render thread: the one that makes, uses and gives back the one renderer."""
+"""The render thread: creates, uses and closes the only renderer."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class RenderJob:
         return self._renderer.draw(wanted.shot)
 
     def close(self) -> None:
-        """Give the renderer back."""
+        """Close the renderer."""
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None

@@ -1,4 +1,4 @@
-"""The actions of retargeting, and the parts that carry them out."""
+"""The actions of retargeting, and the parts that perform them."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from app.session import Session
 from app.widgets.saving import ask_where, beside
 from app.widgets.section import Section
 from engine.errors import EngineError
+from engine.formats.characters.opening import SECOND
 
 HEADS = "Heads (*.npz *.glb *.gltf *.vrm *.obj *.ply *.stl)"
 CAPTURES = "Markers (*.csv *.tsv *.trc *.c3d)"
@@ -30,12 +31,12 @@ class RetargetActions(QObject):
 
     Parameters
     ----------
-    session : whose take is carried
+    session : whose take is retargeted
     window : the parent of the dialogs
 
     Attributes
     ----------
-    retargeting, labelling, placing : what is carried, its labels and its markers
+    retargeting, labelling, placing : the performance, its labels and its markers
     panel, heads, places : the sections that show it
     """
 
@@ -86,7 +87,7 @@ class RetargetActions(QObject):
         self.placing.place(vertex)
 
     def take_in(self, path: Path) -> None:
-        """Carry a capture that was dropped on the window."""
+        """Retarget a capture that was dropped on the window."""
         self.retarget_tool()
         self.retargeting.choosing.open_markers(path)
 
@@ -102,24 +103,29 @@ class RetargetActions(QObject):
         self._session.view.choose_tool("retarget")
 
     def open_markers(self) -> None:
-        """Choose a capture to carry."""
-        self._with_file("Markers to carry", CAPTURES, self.retargeting.choosing.open_markers)
+        """Choose a capture to retarget."""
+        self._with_file("Markers to retarget", CAPTURES, self.retargeting.choosing.open_markers)
 
     def choose_target(self) -> None:
-        """Choose the head to carry to."""
+        """Choose the head to retarget to."""
         self._with_file("The target head", HEADS, self.retargeting.choosing.choose_target)
 
     def choose_target_folder(self) -> None:
-        """Choose a folder of OBJ files as the head to carry to."""
+        """Choose a folder of OBJ files as the head to retarget to."""
         self.retarget_tool()
         name = QFileDialog.getExistingDirectory(self._window, "A folder of OBJ files")
         if name:
             self.retargeting.choosing.choose_target(Path(name))
 
     def own_target(self) -> None:
-        """Carry to Retake's own head."""
+        """Retarget to the Retake head."""
         self.retarget_tool()
         self.retargeting.choosing.choose_target(None)
+
+    def second_target(self) -> None:
+        """Retarget to the second bundled head."""
+        self.retarget_tool()
+        self.retargeting.choosing.choose_target(SECOND)
 
     def carry(self) -> None:
         """Solve the whole take."""
@@ -127,15 +133,15 @@ class RetargetActions(QObject):
         self.retargeting.solve()
 
     def stop_carrying(self) -> None:
-        """Stop the solve under way."""
+        """Cancel the solve."""
         self.retargeting.cancel()
 
     def keep_carried(self) -> None:
-        """Keep what was solved, as one undo step."""
+        """Keep the result, as one undo step."""
         self.retargeting.keep()
 
     def drop_carried(self) -> None:
-        """Keep nothing of what was solved."""
+        """Discard the result."""
         self.retargeting.drop()
 
     def suggest_labels(self) -> None:
@@ -154,7 +160,7 @@ class RetargetActions(QObject):
         """Go to the frame that the labels tell least of."""
         frame = self.labelling.loosest
         if frame is None:
-            self.failed.emit("Nothing was solved from labels yet.", "Label some frames and solve; then it can be told.")
+            self.failed.emit("Nothing was solved from labels yet.", "Label some frames and solve first.")
         else:
             self._session.view.move_playhead(frame)
 

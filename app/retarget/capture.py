@@ -1,4 +1,4 @@
-"""A capture that was opened: its marker motion, what its markers were taken for, and where they are on the target."""
+"""A capture that was opened: its marker motion, the landmark of each marker, and the markers' places on the target."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.retarget.carry import Target, with_markers
+from app.retarget.target import Target, with_markers
 from engine.editing import capture_of
 from engine.errors import EditError
 from engine.formats import markers
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Capture:
-    """A capture, ready to be carried.
+    """A capture, ready to be retargeted.
 
     Attributes
     ----------

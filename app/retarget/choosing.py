@@ -1,4 +1,4 @@
-"""What is carried, and to which head: files of markers and heads, read beside the window."""
+"""Reads files of markers and heads on a thread, and sets them as source and target."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from app.retarget.capture import Capture, captured
-from app.retarget.carry import Pose, Target, opened, with_markers
+from app.retarget.target import Pose, Target, opened, with_markers
 from app.session import Session
 from engine.character import Character, bundled
 from engine.formats.characters.reading import Reading
@@ -24,7 +24,7 @@ class Choosing(QObject):
 
     Parameters
     ----------
-    session : whose take is carried
+    session : whose take is retargeted
     retargeting : whose source and target they are
 
     Attributes
@@ -34,8 +34,7 @@ class Choosing(QObject):
     """
 
     capture_opened = Signal(object)  # a Take of the capture's length
-    head_read = Signal(object)  # the head to show the take on, or None for the bundled one
-    told = Signal(str)  # what is being read, or nothing
+    message = Signal(str)  # what is being read, or nothing
 
     def __init__(self, session: Session, retargeting: Retargeting) -> None:
         super().__init__()
@@ -47,13 +46,13 @@ class Choosing(QObject):
         self._offered: Character | None = None  # shown on, and made the target where the user chose none
 
     def open_markers(self, path: Path, neutral_frame: int = 0) -> None:
-        """Read a capture and carry it in place of the take."""
+        """Read a capture and retarget it in place of the take."""
         target = self._retargeting.target
 
         def work() -> Capture:
             return captured(path, neutral_frame, target)
 
-        self._open(path.name, work, lambda made: self._take_capture(made, path))
+        self._open(path.name, work, lambda capture: self._take_capture(capture, path))
 
     def measure_from(self, frame: int) -> None:
         """Take another frame of the capture for the face at rest."""
@@ -63,11 +62,11 @@ class Choosing(QObject):
     def choose_target(
         self, path: Path | None, labels: Mapping[int, Pose] | None = None, reading: Reading | None = None
     ) -> None:
-        """Carry to the head in a file or folder, with labels that are known for it; None is the bundled one.
+        """Read the head to retarget to from a file or folder; None is the bundled one. `labels` are those known for it.
 
         `reading` is what a person corrected about it: its markers by hand and its labels stay then.
         """
-        name = path.name if path else bundled().name
+        name = _title(path) if path else bundled().name
         before, capture = self._retargeting.target, self._retargeting.capture
 
         def work() -> Target:
@@ -79,7 +78,7 @@ class Choosing(QObject):
             found = found if labels is None else replace(found, labels=labels)
             return found if capture is None else with_markers(found, capture, before.markers)
 
-        title = f"carry to {name}" if reading is None else f"read {name} anew"
+        title = f"retarget to {name}" if reading is None else f"read {name} again"
         self.refused = None
         self._open(
             name, work, lambda target: self._retargeting.change_target(target, title), (path, reading or Reading())
@@ -94,12 +93,12 @@ class Choosing(QObject):
 
     def show_on(self, path: Path | None) -> None:
         """Read a head to show the take on, None for the bundled one; it is the target where the user chose no other."""
-        self.told.emit(f"reading {path.name}…" if path else "")
+        self.message.emit(f"reading {_title(path)}…" if path else "")
         self._retargeting.submit_short(lambda: opened(path) if path else Target(), self._take_shown, "head")
 
     def _take_shown(self, offer: Target) -> None:
-        self.told.emit("")
-        self.head_read.emit(offer.head)
+        self.message.emit("")
+        self._session.view.show_on(offer.head)
         state = self._retargeting
         target = state.target
         touched = target.head is not self._offered or target.labels or target.by_hand or state.result is not None
@@ -119,21 +118,21 @@ class Choosing(QObject):
         self._retargeting.submit(work, then)
         self._retargeting.changed.emit()
 
-    def _take_capture(self, made: Capture, path: Path) -> None:
-        """Carry a capture, unless the take stays open: edits would have been lost, and the user would rather not."""
+    def _take_capture(self, opened: Capture, path: Path) -> None:
+        """Set a capture as the source, unless the user kept the open take to save its edits."""
         self.opening = ""
         state = self._retargeting
         before = state.capture, self._capture_path
-        state.capture, self._capture_path = made.source, path
-        self.capture_opened.emit(made.source.take)
-        if self._session.document.take is not made.source.take:
+        state.capture, self._capture_path = opened.source, path
+        self.capture_opened.emit(opened.source.take)
+        if self._session.document.take is not opened.source.take:
             state.capture, self._capture_path = before
         else:
-            state.put(made.on(state.target))
+            state.put(opened.on(state.target))
             if state.target.head is None:
                 self.choose_target(None)
-            if made.doubt is not None:
-                state.failed.emit(made.doubt.sentence, "Place some of its markers on the target by hand.")
+            if opened.doubt is not None:
+                state.failed.emit(opened.doubt.sentence, "Place some of its markers on the target by hand.")
         state.changed.emit()
 
     def chosen(self) -> None:
@@ -149,3 +148,9 @@ class Choosing(QObject):
         if self.opening and self._head is not None and self._head[0] is not None:
             self.refused = self._head[0], self._head[1]
         self.opening, self._head = "", None
+
+
+def _title(path: Path) -> str:
+    from engine.formats.characters.opening import SECOND_TITLE, is_second
+
+    return SECOND_TITLE if is_second(path) else path.name

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtGui import QUndoCommand
 
-from app.retarget.carry import Target
+from app.retarget.target import Target
 
 
 class TargetCommand(QUndoCommand):

@@ -1,4 +1,4 @@
-"""How the target head was read: what its shapes were taken for, its unit and its axes, each to be corrected."""
+"""How the target head was read: the meaning of its shapes, its unit and its axes, each to be corrected."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QHeaderView, QT
 from app.retarget.retargeting import Retargeting
 from app.session import Session
 from app.widgets.section import Section, quiet
+from app.widgets.text import tip
 from engine.formats.characters.frame import UNITS_MM, UPS
 from engine.formats.characters.names import Match, reviewed
 from engine.take import SHAPES
@@ -20,6 +21,7 @@ LEFT_OUT = "left out"
 FOUND = "as found"
 FACINGS = tuple(str(turn) for turn in (0, 45, 90, 135, 180, -135, -90, -45))
 TABLE_PX, ROW_PX = 210, 24
+MEANING_PX = 116  # of the column with the boxes
 
 
 class HeadSection(Section):
@@ -32,7 +34,7 @@ class HeadSection(Section):
 
     Attributes
     ----------
-    table : the file's names, and a box with what each is taken for
+    table : the file's names, and a box with the meaning of each
     boxes : the boxes, by the file's name
     all_shapes : whether those without doubt are listed too
     unit, up, facing : of the file
@@ -41,7 +43,7 @@ class HeadSection(Section):
     tools = frozenset({"retarget"})
 
     def __init__(self, session: Session, retargeting: Retargeting) -> None:
-        super().__init__(session, "Head as read")
+        super().__init__(session, "Imported head")
         self._retargeting = retargeting
         self._facts = quiet("")
         self.column.addWidget(self._facts)
@@ -58,11 +60,15 @@ class HeadSection(Section):
         self.up.activated.connect(lambda _: retargeting.choosing.read_anew(up=_chosen(self.up)))
         self.facing.activated.connect(lambda _: retargeting.choosing.read_anew(facing_deg=_degrees(self.facing)))
         self.table = QTableWidget(0, 2)
-        self.table.setHorizontalHeaderLabels(["In the file", "Taken for"])
+        self.table.setHorizontalHeaderLabels(["Shape", "Meaning"])
         self.table.setAccessibleName("Shapes of the head")
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(ROW_PX)
-        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        header = self.table.horizontalHeader()
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        header.setSectionResizeMode(1, QHeaderView.ResizeMode.Fixed)
+        header.resizeSection(1, MEANING_PX)
         self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
         self.column.addWidget(self.table)
         self.all_shapes = QCheckBox("List all shapes")
@@ -79,12 +85,12 @@ class HeadSection(Section):
     def show_all(self) -> None:
         """Show how the target was read."""
         state = self._retargeting
-        made, refused = state.target.imported, state.choosing.refused
+        imported, refused = state.target.imported, state.choosing.refused
         reading = refused[1] if refused else state.target.reading
-        self.needed = made is not None or refused is not None
+        self.needed = imported is not None or refused is not None
         self.setVisible(self.needed and self.session.view.tool in self.tools)
         for part in (self._frame, self.table, self.all_shapes):
-            part.setVisible(made is not None or (refused is not None and part is self._frame))
+            part.setVisible(imported is not None or (refused is not None and part is self._frame))
         for box, value in ((self.unit, reading.unit), (self.up, reading.up), (self.facing, _turn(reading.facing_deg))):
             with QSignalBlocker(box):
                 if value and box.findText(value) < 0:
@@ -97,11 +103,11 @@ class HeadSection(Section):
             self.table.hide()
             self.all_shapes.hide()
             return
-        if made is None:
+        if imported is None:
             return
-        rows = made.matches if self.all_shapes.isChecked() else reviewed(made.matches)
-        counts = f"{sum(row.sure for row in made.matches)} of {counted(len(made.matches), 'shape')} taken."
-        self._facts.setText(" ".join([counts, *made.notices]))
+        rows = imported.matches if self.all_shapes.isChecked() else reviewed(imported.matches)
+        counts = f"{sum(row.sure for row in imported.matches)} of {counted(len(imported.matches), 'shape')} matched."
+        self._facts.setText(" ".join([counts, *imported.notices]))
         self.table.setVisible(bool(rows))
         self._list(tuple(rows))
 
@@ -114,9 +120,9 @@ class HeadSection(Section):
         self.table.setFixedHeight(min(TABLE_PX, ROW_PX * (len(rows) + 1) + 6))
         for number, row in enumerate(rows):
             item = QTableWidgetItem(row.source)
-            item.setToolTip(row.how)
+            item.setToolTip(tip(f"{row.source}: {row.how}"))
             self.table.setItem(number, 0, item)
-            box = self.boxes[row.source] = _box(f"What {row.source[:60]} is taken for", (LEFT_OUT, *SHAPES))
+            box = self.boxes[row.source] = _box(f"Meaning of {row.source[:60]}", (LEFT_OUT, *SHAPES))
             box.setCurrentText(row.shape if row.sure else LEFT_OUT)
             box.setToolTip(row.how)
             box.activated.connect(lambda _, name=row.source: self._take(name))
@@ -129,7 +135,7 @@ class HeadSection(Section):
 
 
 class _Box(QComboBox):
-    """A box that the wheel scrolls past: it stands in a list, and a choice by accident reads the head anew."""
+    """A box that ignores the wheel: in a scrolled list, an accidental choice would read the head again."""
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()

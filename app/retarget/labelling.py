@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from app.retarget.carry import Pose
 from app.retarget.retargeting import Retargeting
 from app.retarget.solving import LABELS
+from app.retarget.target import Pose
 from app.session import Session
 from engine.editing import suggest_frames
 from engine.errors import EditError
 from engine.formats import labels as files
+from engine.formats.characters.opening import is_second
 from engine.formats.labels import LabelFile
 from engine.take import SHAPES
 from engine.words import counted
@@ -50,7 +51,7 @@ class Labelling:
         frame = self._session.view.playhead
         face = self._retargeting.face_at(frame)
         if face is None:
-            raise EditError("There is no target to label.", "Choose a target in the Retarget panel.")
+            raise EditError("There is no head to label.", "Choose a head in the Retarget panel.")
         pose = dict(zip(SHAPES, face.tolist(), strict=True))
         self._change({**self._retargeting.target.labels, frame: pose}, f"label frame {frame}")
 
@@ -90,7 +91,8 @@ class Labelling:
     def write(self, path: Path) -> None:
         """Write labels; raises `EngineError`."""
         target, folder = self._retargeting.target, path.absolute().parent
-        head = target.path.absolute() if target.path else None
+        bundled = target.path is None or is_second(target.path)
+        head = None if target.path is None or bundled else target.path.absolute()
         if head is not None:  # so that the two can move together; a file names nothing outside its folder
             head = head.relative_to(folder) if head.is_relative_to(folder) else None
         files.write(LabelFile(target.labels, head), path)

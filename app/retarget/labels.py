@@ -77,7 +77,7 @@ class LabelsBox(QWidget):
             return
         labelled = frame in retargeting.target.labels
         self._hint.setText(f"Frame {frame} has a label." if labelled else f"The target's pose at frame {frame}:")
-        self.label_button.setText("Label it anew" if labelled else "Label this frame")
+        self.label_button.setText("Replace the label" if labelled else "Label this frame")
         self.unlabel_button.setVisible(labelled)
         reach = round(self._session.document.take.fps / 2)
         around = self._session.document.take.weights[max(0, frame - reach) : frame + reach + 1]

@@ -1,4 +1,4 @@
-"""The frames around the playhead, carried as soon as they are looked at."""
+"""Retargets the frames around the playhead as soon as they are shown."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.retarget.carry import Target
 from app.retarget.solving import KIND
+from app.retarget.target import Target
 from app.session.asked import Asked
 from app.session.edits import Runner
 from engine.editing import Matching, Performance, Retargeted
@@ -42,7 +42,7 @@ class LiveFrames:
         self.forget()
 
     def forget(self) -> None:
-        """Know no frame: another performance is carried."""
+        """Forget every frame: the performance is another one."""
         self._known: Retargeted | None = None
         self._asked = _Asked()
 
@@ -58,7 +58,7 @@ class LiveFrames:
         return known.weights_at(int(np.clip(frame, known.start, known.start + len(known.take) - 1)))
 
     def ask(self, performance: Performance, target: Target, matching: Matching, *, playhead: int) -> None:
-        """Carry the frames around the playhead, where they are not known or asked for yet."""
+        """Retarget the frames around the playhead that are not known yet."""
         frames = len(performance.take)
         wish = (performance, target.places, target.head, matching)
         first, stop = self._asked.frames if self._asked.wish == wish else (0, 0)

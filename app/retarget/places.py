@@ -6,9 +6,9 @@ from PySide6.QtCore import QSignalBlocker
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QCheckBox, QComboBox, QListWidget, QListWidgetItem, QPushButton
 
-from app.retarget.carry import Target
 from app.retarget.placing import Placing
 from app.retarget.retargeting import Retargeting
+from app.retarget.target import Target
 from app.session import Session
 from app.widgets.section import Section, quiet
 from app.widgets.text import tip
@@ -64,7 +64,7 @@ class PlacesSection(Section):
         self.landmark = QComboBox()
         self.landmark.addItems([ELSEWHERE, *MARKERS])
         self.landmark.setAccessibleName("Landmark of the chosen marker")
-        self.landmark.setToolTip("Which place of a face the chosen marker is; it was found by where it lies at rest")
+        self.landmark.setToolTip("Which place of a face the chosen marker is; it was found by its position at rest")
         self.landmark.activated.connect(self._mean)
         self.column.addWidget(self.landmark)
         self.rest_button, self.remove_button = QPushButton("Place the others"), QPushButton("Remove")
@@ -88,7 +88,7 @@ class PlacesSection(Section):
         self._facts.setText(
             f"{placed} of {len(names)} on the target, {len(target.by_hand)} by hand." + self._guessed()
             if target.head is not None
-            else "Choose a target first."
+            else "Choose a head first."
         )
         with QSignalBlocker(self.list):
             if [self.list.item(row).data(0x100) for row in range(self.list.count())] != list(names):
@@ -112,7 +112,7 @@ class PlacesSection(Section):
     def _guessed(self) -> str:
         rows = self._retargeting.target.markers.rows if self._retargeting.capture is not None else ()
         found = sum(row.how == "by place" and bool(row.landmark) for row in rows)
-        return f" {found} were told by where they lie at rest: look them over." if found else ""
+        return f" {found} were found by their position at rest: check them." if found else ""
 
     def _mean(self, _: int) -> None:
         text = self.landmark.currentText()

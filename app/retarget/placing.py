@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from app.retarget.carry import Target, with_markers, with_place
 from app.retarget.retargeting import Retargeting
+from app.retarget.target import Target, with_markers, with_place
 from engine.formats.markers import layout as markers_layout
 
 
@@ -63,7 +63,7 @@ class Placing:
         def work() -> Target:
             return with_markers(free, capture, target.markers.corrected({name: landmark}))
 
-        title = f"take {name} for {landmark}" if landmark else f"leave {name} out"
+        title = f"set {name} to {landmark}" if landmark else f"leave {name} out"
         state.submit(work, lambda changed: state.change_target(changed, title))
 
     def place_rest(self) -> None:

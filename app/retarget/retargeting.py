@@ -1,4 +1,4 @@
-"""Retargeting under way: what is carried to which head, live around the playhead and whole on request."""
+"""Retargets the take or a capture to another head: live around the playhead, and whole on request."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.background import LatestWins
-from app.retarget.carry import Errand, Target, posed
 from app.retarget.choosing import Choosing
 from app.retarget.commands import TargetCommand
-from app.retarget.kept import KeptHeads
 from app.retarget.live import LiveFrames
 from app.retarget.solving import KIND, LABELS, MOVEMENT, carry_out, whole
+from app.retarget.target import Errand, Target, posed
 from app.session import Change, Session
 from app.session.asked import Asked
 from app.session.edits import Runner
+from app.session.heads import KeptHeads
 from engine.character import bundled
 from engine.editing import MARKERS, Matching, Performance, Retargeted
 from engine.take import SHAPES, Array
@@ -28,19 +28,19 @@ if TYPE_CHECKING:
 
 
 class Retargeting(QObject):
-    """Knows source, target and method; keeps what came of it as one undo step.
+    """Holds source, target and method, and keeps the result as one undo step.
 
     Parameters
     ----------
-    session : whose take is carried, and becomes what was carried
+    session : whose take is retargeted, and replaced by the result
 
     Attributes
     ----------
     target : the head, its markers and labels
-    capture : markers that are carried in place of the take's weights
+    capture : markers that are retargeted in place of the take's weights
     method : MOVEMENT or LABELS
     matching : how movement is matched
-    result : the whole take as the target plays it, until it is kept or dropped
+    result : the whole take on the target, until it is kept or discarded
     share : how far the solve is, 0..1; None while nothing is solved
     choosing : reads sources and targets
     suggestions : frames that are worth a label, best first
@@ -86,7 +86,7 @@ class Retargeting(QObject):
 
     @property
     def performance(self) -> Performance:
-        """What is carried."""
+        """The performance that is retargeted."""
         if self._performance is None:
             session = self._session
             self._performance = Performance(
@@ -96,7 +96,7 @@ class Retargeting(QObject):
 
     @property
     def ready(self) -> bool:
-        """Whether there is a source and another head to carry it to."""
+        """Whether there is a source and another head to retarget it to."""
         head = self.target.head
         return head is not None and (self.capture is not None or head is not self.performance.head)
 
@@ -158,15 +158,15 @@ class Retargeting(QObject):
         self.suggestions = frames
         self.changed.emit()
 
-    # --- carrying
+    # --- solving
 
     def use(self, *, method: str | None = None, matching: Matching | None = None) -> None:
-        """Carry by another method, or with other settings."""
+        """Retarget by another method, or with other settings."""
         self.method, self.matching = method or self.method, matching or self.matching
         self._begin_anew()
 
     def ask_live(self) -> None:
-        """Carry the frames around the playhead, where they are not known yet."""
+        """Retarget the frames around the playhead that are not known yet."""
         view = self._session.view
         if not self.ready or self.result is not None or view.tool != "retarget":
             return
@@ -177,12 +177,12 @@ class Retargeting(QObject):
         return asked.of is self._performance and getattr(asked.inputs, "head", None) is self.target.head
 
     def solve(self) -> None:
-        """Carry the whole take."""
+        """Solve the whole take."""
         if not self.ready:
-            self.failed.emit("There is no other head to carry the take to.", "Choose a target in the Retarget panel.")
+            self.failed.emit("There is no other head to retarget to.", "Choose a head in the Retarget panel.")
             return
         if self.method == LABELS and not self.target.labels:
-            self.failed.emit("No frame is labelled yet.", "Suggest frames, pose the target at each, and label it.")
+            self.failed.emit("No frame is labelled yet.", "Suggest frames, pose the head at each, and label it.")
             return
         self.cancel()
         self.share = 0.0
@@ -201,7 +201,7 @@ class Retargeting(QObject):
             self.progress.emit(share)
 
     def cancel(self) -> bool:
-        """Stop the solve under way; returns whether there was one."""
+        """Cancel the solve; returns whether there was one."""
         if self._solver.last is None:
             return False
         self._solver.drop()
@@ -210,7 +210,7 @@ class Retargeting(QObject):
         return True
 
     def keep(self) -> None:
-        """Make what was carried the take, on its head, as one undo step."""
+        """Replace the take by the result, on its head, as one undo step."""
         result, head, take = self.result, self.target.head, self._session.document.take
         if result is None or head is None:
             return
@@ -224,19 +224,19 @@ class Retargeting(QObject):
         self.submit(lambda: result.patch(take), then)
 
     def show(self, result: Retargeted | None, solved: Asked | None = None) -> None:
-        """Show what was carried before, or nothing."""
+        """Show an earlier result, or none."""
         self.result, self.solved = result, solved
         self.changed.emit()
 
     def drop(self) -> None:
-        """Keep nothing of what was carried."""
+        """Discard the result."""
         self.result = self.solved = None
         self._live.ask_anew()
         self.ask_live()
         self.changed.emit()
 
     def close(self) -> None:
-        """Stop what is under way and end the threads."""
+        """Cancel the solve and end the threads."""
         # clearing itself at its end, it would still tell us
         self._session.document.undo.indexChanged.disconnect(self._follow)
         for part in (self._solver, self._nearby):
@@ -276,7 +276,7 @@ class Retargeting(QObject):
         self.changed.emit()
 
     def _short_refused(self, request: object, sentence: str, advice: str) -> None:
-        self.choosing.told.emit("")
+        self.choosing.message.emit("")
         self.failed.emit(sentence, advice)
 
     def _on_change(self, change: Change) -> None:

@@ -1,4 +1,4 @@
-"""The Retarget tool's settings: what is carried, to which head, how, and what becomes of it."""
+"""The Retarget tool's settings: source, head, method, and what to do with the result."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class RetargetSection(Section):
 
     Parameters
     ----------
-    session : whose take is carried
-    retargeting, labelling : carry it, and know the labels
+    session : whose take is retargeted
+    retargeting, labelling : retarget it, and hold the labels
 
     Attributes
     ----------
@@ -38,16 +38,16 @@ class RetargetSection(Section):
         self._retargeting = retargeting
         self._source, self._target = quiet(""), quiet("")
         self.markers_button = QPushButton("Markers…")
-        self.markers_button.setToolTip("Carry a capture's markers (CSV, TRC, C3D) in place of the open take")
+        self.markers_button.setToolTip("Retarget a capture's markers (CSV, TRC, C3D) in place of the open take")
         self.rest_frame = QSpinBox(maximum=10_000_000)
         self.rest_frame.setKeyboardTracking(False)
         self.rest_frame.setToolTip("A frame of the capture in which the face is at rest")
         self.rest_frame.valueChanged.connect(retargeting.choosing.measure_from)
         self.target_button, self.folder_button = QPushButton("Head…"), QPushButton("Folder…")
-        self.bundled_button = QPushButton("Retake's own head")
+        self.bundled_button = QPushButton("Retake head")
         self.target_button.setToolTip("A character file, glTF, GLB or VRM, OBJ, or a packed ICT-FaceKit")
         self.folder_button.setToolTip("A folder with one OBJ file for each shape")
-        self.bundled_button.setToolTip("The head that comes with Retake, which every take is first shown on")
+        self.bundled_button.setToolTip("The head that comes with Retake, which every take is shown on at first")
         self.column.addWidget(self._source)
         self.column.addWidget(self.markers_button)
         self._rest = QWidget()
@@ -78,7 +78,7 @@ class RetargetSection(Section):
 
     def _lay_out_solve(self) -> None:
         self.solve_button, self.cancel_button = QPushButton("Solve the whole take"), QPushButton("Cancel")
-        self.keep_button, self.drop_button = QPushButton("Keep"), QPushButton("Drop")
+        self.keep_button, self.drop_button = QPushButton("Keep"), QPushButton("Discard")
         for button in (self.solve_button, self.keep_button):
             button.setProperty("primary", True)
         self.keep_button.setToolTip("The take becomes this, on the target's head; one undo takes it back")
@@ -137,16 +137,16 @@ class RetargetSection(Section):
     def _hint(self) -> str:
         state = self._retargeting
         if state.target.head is None:
-            return "Choose the head that the performance goes to."
+            return "Choose a head to retarget to."
         if not state.ready:
-            return f"The take is on {state.target.head.name}. Choose another head to carry it on."
+            return f"The take is on {state.target.head.name}. Choose another head to retarget to."
         if state.result is not None:
-            said = [each for each in state.result.take.notices if each not in state.performance.take.notices]
+            notices = [each for each in state.result.take.notices if each not in state.performance.take.notices]
             return " ".join(
-                [f"Solved {counted(len(state.result.take), 'frame')}: play them, then keep or drop them.", *said]
+                [f"Solved {counted(len(state.result.take), 'frame')}: play them, then keep or discard them.", *notices]
             )
         if state.share is not None:
-            return "You can go on looking meanwhile."
+            return "You can go on working."
         if state.method == LABELS:
             return f"{counted(len(state.target.labels), 'frame')} labelled."
         return "The preview follows at once, for the frames around the playhead."

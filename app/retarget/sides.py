@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.retarget.carry import Target
 from app.retarget.retargeting import Retargeting
 from app.retarget.solving import LABELS
+from app.retarget.target import Target
 from app.session import Session
 from app.session.sides import Dot, Side
 from engine.character import Character, bundled
@@ -25,7 +25,7 @@ MARGIN = 0.25  # of a capture's extent, around it
 
 
 def sides(session: Session, retargeting: Retargeting, chosen: str, *, dots: bool) -> tuple[Side, ...]:
-    """Return what stands side by side now; nothing where the take itself is to be seen.
+    """Return the heads to show side by side; none where the take itself is shown.
 
     `chosen` is the marker that a click on the target places; `dots` are drawn on heads where they are asked for.
     """

@@ -29,7 +29,7 @@ STRENGTHS: tuple[Strength, ...] = (
     Strength(
         "alpha", "Likely poses", "More: poses that the target's shapes make likely. Less: closer to the movement."
     ),
-    Strength("beta", "Held places", "More: long-held poses stay. Less: only movement counts, and poses sink to rest."),
+    Strength("beta", "Positions", "More: long-held poses stay. Less: only movement counts, and poses drift to rest."),
     Strength("closure", "Closures", "More: lips and lids meet whenever the source's do. None: they are left alone."),
 )
 

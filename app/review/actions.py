@@ -36,7 +36,7 @@ class ReviewActions(QObject):
     window : the parent of the dialogs
     """
 
-    told = Signal(str)
+    message = Signal(str)
     failed = Signal(str, str)  # sentence, advice
     looped = Signal(bool)  # whether a change is played round and round
 
@@ -73,7 +73,7 @@ class ReviewActions(QObject):
         self.reporting.close()
 
     def _tell_written(self, path: Path) -> None:
-        self.told.emit(f"{path.name} is written.")
+        self.message.emit(f"{path.name} is written.")
 
     def _carry_out(self, name: str) -> None:
         getattr(self, name)()
@@ -172,7 +172,7 @@ class ReviewActions(QObject):
         suggested = beside(document.path, f"{Path(document.name).stem}_{ending}")
         path, _ = ask_where(self._window, title, suggested, kinds)
         if path is not None:
-            self.told.emit(f"Writing {path.name}…")
+            self.message.emit(f"Writing {path.name}…")
             self.reporting.write(document.contents(), document.name, path, arguments)
 
     # --- within
@@ -199,7 +199,7 @@ class ReviewActions(QObject):
             self._end_loop()
 
     def _show_alignment(self, *_: str) -> None:
-        self.section.show_pair(self.comparing.told)
+        self.section.show_pair(self.comparing.alignment_inputs)
 
     def _end_loop(self) -> None:
         self._looping = None
@@ -207,11 +207,11 @@ class ReviewActions(QObject):
         self.looped.emit(False)
 
     def _shift_by(self, frames: int) -> None:
-        told = self.comparing.told
-        if told is None:
+        inputs = self.comparing.alignment_inputs
+        if inputs is None:
             self.failed.emit("There is no second take to move.", "Compare with another take first.")
         else:
-            self.comparing.shift(float(told["offset_s"]) + frames / self._session.document.take.fps)
+            self.comparing.shift(float(inputs["offset_s"]) + frames / self._session.document.take.fps)
 
     def _align(self, edit: Edit) -> None:
         self._session.document.undo.push(AlignCommand.of(self._session.document, edit))
@@ -221,7 +221,7 @@ class ReviewActions(QObject):
         self.load(path)
 
     def _open_pair(self, open_then: Take, found: Pair) -> None:
-        """Make the other version one step after the open take, so that undo and hold-to-compare tell the two apart."""
+        """Make the other version one step after the open take, so that undo and hold-to-compare show the two."""
         if open_then is not self._session.document.take:
             return  # it was edited or closed while the other one was read
         name = found.after.name
@@ -232,7 +232,7 @@ class ReviewActions(QObject):
                 EditCommand.of(self._session.document, found.patch, f"as in {name}", kind=COMPARE, inputs=found.inputs)
             )
             apart = f" {counted(found.apart, 'frame')} of it have no counterpart." if found.apart else ""
-            self.told.emit(f"{name} is {found.alignment.sentence}.{apart}")
+            self.message.emit(f"{name} is {found.alignment.sentence}.{apart}")
             if not found.alignment.alike:
                 self.failed.emit(
                     f"{found.before.name} and {name} do not look like one performance.",

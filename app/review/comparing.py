@@ -48,7 +48,7 @@ class _Shift:
 
 
 class Comparing(QObject):
-    """Compares what is open with how it was recorded, while somebody looks at the result.
+    """Compares the open take with its recording, while the result is shown.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Comparing(QObject):
         return self._work.idle
 
     @property
-    def told(self) -> Mapping[str, Any] | None:
+    def alignment_inputs(self) -> Mapping[str, Any] | None:
         """How the two takes were brought together; None where there is no second one."""
         return paired_by(self._edits())
 
@@ -101,15 +101,15 @@ class Comparing(QObject):
 
     def shift(self, offset_s: float) -> None:
         """Put the take before at another time; `aligned` follows, or `failed` where that take is not there any more."""
-        session, told = self._session, self.told
+        session, inputs = self._session, self.alignment_inputs
         raw: Take | Path | None = None
         if self._raw is not None and self._raw[0] is session.document.recorded:
             raw = self._raw[1]
-        elif told is not None and session.document.path is not None:
-            raw = found_again(told, session.document.path)
+        elif inputs is not None and session.document.path is not None:
+            raw = found_again(inputs, session.document.path)
         if raw is None:
             self.failed.emit(
-                "The take before is not where it was, so it cannot be moved.", "Compare the two takes anew."
+                "The take before is not where it was, so it cannot be moved.", "Compare the two takes again."
             )
         else:
             self._work.submit(_Shift(session.document.original, session.document.take, raw, offset_s), "shift")
@@ -168,6 +168,6 @@ def _shifted(request: _Shift) -> Edit:
     offset_s = request.offset_s
     weights, lost, _ = on_its_clock(raw, request.after, offset_s)
     if len(weights) != len(request.original):
-        raise EngineError("The takes have another length by now.", "Compare them anew.")
+        raise EngineError("The takes have another length by now.", "Compare them again.")
     frames = offset_s * request.after.fps
     return align_edit(f"align at {frames:+g} frames", weights, lost, {"offset_s": offset_s, "by": "offset"})

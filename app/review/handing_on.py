@@ -1,4 +1,4 @@
-"""What a reviewer hands on: a movie, flags and notes; how far the writing is, and a button that stops it."""
+"""Exports of a review: a movie, flags and notes, with their progress and a button that cancels."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The queue of pairs: how many are judged, which is open, and what was said of each."""
+"""The queue of pairs: how many are judged, which is open, and what was verdict of each."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class QueueSection(Section):
             self.list.clear()
             for entry in queue:
                 item = QListWidgetItem(f"{_sign(entry)}  {plain(entry.after.name, longest=NAME_LENGTH)}", self.list)
-                item.setToolTip(tip(_told(entry)))
+                item.setToolTip(tip(_description(entry)))
                 if entry.trouble:
                     item.setForeground(QBrush(QColor("#E69F00")))
             self.list.setCurrentRow(-1 if current is None else current)
@@ -89,9 +89,9 @@ def _sign(entry: Entry) -> str:
     return GOOD if entry.verdict.judgement == APPROVED else BAD
 
 
-def _told(entry: Entry) -> str:
+def _description(entry: Entry) -> str:
     """Return all that is known of a pair."""
-    said = entry.trouble or (
+    verdict = entry.trouble or (
         entry.verdict.sentence if entry.verdict is not None and entry.judged else "Not judged yet."
     )
-    return f"{entry.before.name} and {entry.after.name}\n{said}"
+    return f"{entry.before.name} and {entry.after.name}\n{verdict}"

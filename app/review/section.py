@@ -91,15 +91,15 @@ class ReviewSection(Section):
         later = [change for change in self._changes if change.stop > frame]
         return later[0] if later else self._changes[-1] if self._changes else None
 
-    def show_pair(self, told: Mapping[str, Any] | None) -> None:
+    def show_pair(self, inputs: Mapping[str, Any] | None) -> None:
         """Show how two takes were brought together; None where there is no second one."""
         for widget in (self.alignment, self._offset_row):
-            widget.setVisible(told is not None)
-        if told is None:
+            widget.setVisible(inputs is not None)
+        if inputs is None:
             return
-        alignment = alignment_of(told)
-        alike = f" Both move alike by {alignment.correlation:.2f}." if told.get("by") != "offset" else ""
-        name = plain(str(told.get("name", "")), longest=SENTENCE_LENGTH)
+        alignment = alignment_of(inputs)
+        alike = f" Both move alike by {alignment.correlation:.2f}." if inputs.get("by") != "offset" else ""
+        name = plain(str(inputs.get("name", "")), longest=SENTENCE_LENGTH)
         self.alignment.setText(f"Before: {name}, {alignment.sentence}.{alike}")
         with QSignalBlocker(self.offset):
             self.offset.setValue(alignment.offset_s * self.session.document.take.fps)

@@ -128,7 +128,9 @@ class VerdictSection(Section):
         self._listed = verdicts
         self.sentence.setPlaceholderText(WHY)
         self.sentence.setText(plain(now.why) if now is not None else "")
-        self.history.setText("\n".join(_told(verdict) for verdict in reversed(verdicts[-SHOWN:])) or "No verdict yet.")
+        self.history.setText(
+            "\n".join(_line_of(verdict) for verdict in reversed(verdicts[-SHOWN:])) or "No verdict yet."
+        )
         self.taken_back.setVisible(now is not None)
         self._show_buttons()
 
@@ -139,8 +141,8 @@ class VerdictSection(Section):
         self.send_back.setChecked(judgement == NEEDS_WORK)
 
 
-def _told(verdict: Verdict) -> str:
+def _line_of(verdict: Verdict) -> str:
     """Return a verdict with who gave it and when."""
-    said = plain(verdict.sentence) if verdict.judgement else " ".join(["Taken back.", plain(verdict.why)]).strip()
+    text = plain(verdict.sentence) if verdict.judgement else " ".join(["Taken back.", plain(verdict.why)]).strip()
     by = signed(verdict.author, verdict.time)
-    return f"{said}\n{by}" if by else said
+    return f"{text}\n{by}" if by else text

@@ -23,5 +23,6 @@ class Change(Flag):
     VISEMES = auto()  # what is said when
     FLAGS = auto()  # what was found automatically
     CHARACTER = auto()  # whose head the weights are for
+    HEAD = auto()  # the head that the take is shown on
     REVIEW = auto()  # where the take differs from the recording
     READING = auto()  # the frame rate, or the sides of mouth and jaw, that the take is read with

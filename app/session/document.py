@@ -52,8 +52,8 @@ class Document(QObject):
     video : the file of the reference video, likewise
     sliding : the kind of what is being moved in time, and where it is by now; None between moves
     flags : what was found automatically, by the first frame; None while it is looked for
-    dismissed : findings that somebody does not mind, which are no `flags`
-    differences : half-open ranges of frames that differ from the recording; None while nobody looks
+    dismissed : findings that the user dismissed, which are no `flags`
+    differences : half-open ranges of frames that differ from the recording; None outside a review
     touched : the half-open range of frames that changed last
     character : whose head the weights are for; None for the bundled one
     """
@@ -73,7 +73,7 @@ class Document(QObject):
             self.changed.emit(change)
 
     def open(self, take: Take, path: Path | None, measured: Array | None = None) -> None:
-        """Replace everything by a take, whose controls may have been measured before, (frames, 16); tells nobody."""
+        """Replace everything by a take, whose controls may have been measured before, (frames, 16); emits nothing."""
         self.opening = True
         try:
             self._put(take, path, measured if measured is not None else _measured(take))
@@ -107,7 +107,7 @@ class Document(QObject):
         state: Replayed,
         measured: tuple[Array, Array],
     ) -> None:
-        """Replace everything by what a project holds: its edits as `steps`, which come to `state`; tells nobody.
+        """Replace everything by a project's contents: its edits as `steps`, which result in `state`; emits nothing.
 
         The controls, (frames, 16), are `measured` of the original as it is read there, and of that state.
         """
@@ -192,7 +192,7 @@ class Document(QObject):
         self._tell(Change.DRAFT)
 
     def set_flags(self, flags: tuple[quality.Flag, ...], dismissed: tuple[quality.Flag, ...] = ()) -> None:
-        """Show what was found automatically, and which findings somebody does not mind."""
+        """Set the flags that were found, and those that the user dismissed."""
         self.flags, self.dismissed = flags, dismissed
         self._tell(Change.FLAGS)
 

@@ -29,7 +29,7 @@ class Stopped(Exception):
 
 
 class Runner(QObject):
-    """Carries out what is asked on one thread of its own; newer wishes replace older ones, and stop them if they can.
+    """Runs requests on one thread of its own; a newer request replaces the older one, and cancels it if it can.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Runner(QObject):
         return self._work.idle
 
     def ask(self, asked: Asked) -> None:
-        """Have a wish carried out; `arrived` or `failed` follows, unless another wish does."""
+        """Run a request; `arrived` or `failed` follows, unless another request replaces it."""
         self.last = asked
         self._work.submit((asked, self._session.document.take))
 
@@ -143,7 +143,7 @@ class Editing(QObject):
 
     @property
     def busy(self) -> bool:
-        """Whether an edit is under way."""
+        """Whether an edit has a draft that is not kept yet."""
         return self._runner.last is not None
 
     @property
@@ -161,7 +161,7 @@ class Editing(QObject):
         self._runner.begin(warm_up)
 
     def ask(self, start: int, asked: Array) -> None:
-        """Show what the face does for asked curves, (n, 16), on the frames from `start`; NaN asks for nothing."""
+        """Show what the face does for target curves, (n, 16), on the frames from `start`; NaN has no target."""
         if not self._finishing:
             base, request = self._wishes.asking(start, asked)
             self._curves = start, asked
@@ -200,7 +200,7 @@ class Editing(QObject):
             self._keep(asked, draft)
 
     def cancel(self) -> None:
-        """Forget the edit under way."""
+        """Forget the current edit."""
         self._runner.drop()
         self._session.document.set_draft(None)
 

@@ -36,7 +36,7 @@ class _Look:
 
 
 class Flagging(QObject):
-    """Looks again after each edit and tells the session.
+    """Finds flags again after each edit and sets them in the session.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Flagging(QObject):
 
     @property
     def idle(self) -> bool:
-        """Whether nothing is being looked at."""
+        """Whether no search is running."""
         return self._work.idle
 
     def close(self) -> None:
@@ -111,7 +111,7 @@ class Flagging(QObject):
         self._show()
 
     def _show(self) -> None:
-        """Tell the session which findings count, and which were dismissed."""
+        """Set in the session which findings count, and which were dismissed."""
         if self._known is not None:
             self._session.document.set_flags(*parted(self._known, self._session.document.marks.dismissals))
 

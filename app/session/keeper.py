@@ -107,7 +107,7 @@ class Keeper(QObject):
             self._session.document.undo.resetClean()
 
     def release(self) -> None:
-        """Let go of the project, so that it can be read anew; what is open is in memory alone until `keep` or `open`."""
+        """Close the project, so that it can be read again; what is open is in memory alone until `keep` or `open`."""
         self._detach(delete=False)
 
     def holds(self, path: Path) -> bool:
@@ -198,14 +198,14 @@ class Keeper(QObject):
             return self._kept.project
 
     def _keep_unsaved(self, contents: Contents) -> Project:
-        """Let the work go to a new file of unsaved work; what was kept in before is let go of, as it is."""
+        """Keep the work in a new file of unsaved work; the file before is closed as it is."""
         before, path = self._kept, new_path(self.folder)
         with as_unsaved_work(path):
-            made = project.create(path, contents)
-        self._kept = Kept(made, saved=False)
+            created = project.create(path, contents)
+        self._kept = Kept(created, saved=False)
         if before is not None:
             before.project.close()
-        return made
+        return created
 
     def _go_on_unsaved(self, contents: Contents, error: DisplacedError) -> None:
         """Keep all of the work elsewhere: the file that it went to is no more its own."""
@@ -282,10 +282,10 @@ class Keeper(QObject):
         with self._lock:
             before, self._kept = self._kept, None
         if before is not None:
-            self._let_go(before.project, delete=delete and not before.saved)
+            self._close_project(before.project, delete=delete and not before.saved)
         self._told = ""
 
-    def _let_go(self, old: Project, *, delete: bool) -> None:
+    def _close_project(self, old: Project, *, delete: bool) -> None:
         old.close()
         if delete:
             try:
@@ -298,11 +298,11 @@ class Keeper(QObject):
         self._kept = Kept(saved, saved=True)
         self._secure(self._kept)
         if before is not None and before.project is not saved:
-            self._let_go(before.project, delete=not before.saved)
+            self._close_project(before.project, delete=not before.saved)
         return saved
 
     def _secure(self, kept: Kept) -> None:
-        """Let a project of the user's be found again even if somebody replaces it just before a kill."""
+        """Record where a saved project is, so that it is found even if its file is replaced just before a kill."""
         if kept.saved:
             kept.project.keep_spare(self.folder)
 
@@ -325,7 +325,7 @@ class Keeper(QObject):
         return project.create(path, contents, self._report)
 
     def _report(self, share: float) -> None:
-        """Tell how far a save is; on the keeper's thread."""
+        """Emit the progress of a save; on the keeper's thread."""
         if self._stopped:
             raise EngineError("The project was not saved.", "Your work is kept as it was before.")
         self.progress.emit(share)

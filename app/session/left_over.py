@@ -1,4 +1,4 @@
-"""What programs that ended early left: unsaved work, recordings, and projects that somebody replaced under them."""
+"""Finds what programs that ended early left: unsaved work, recordings, and projects whose file was replaced."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ class InUse:
     sentence: str
 
     def drop(self) -> None:
-        """Let go of nothing."""
+        """Do nothing: there is no file to close."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,13 +72,13 @@ class Opened:
     steps: tuple[QUndoCommand, ...] = ()
 
     def drop(self) -> None:
-        """Let go of the file: something else was opened."""
+        """Close the file: something else was opened."""
         if self.project is not None:
             self.project.close()
 
 
 def opened(session: Session, wish: Wish, report: Callable[[float], None] = lambda _: None) -> Opened:
-    """Read a file for a session; raises `EngineError`, or what `report` raises, which is told the share that is done."""
+    """Read a file for a session; calls `report` with the share done. Raises `EngineError`, or what `report` raises."""
     report(0.0)
     sweep(wish.path.parent)
     if not wish.left_over and wish.path.suffix.lower() != ENDING:
@@ -152,7 +152,7 @@ class Opening(QObject):
         self._work.stop()
 
     def _read(self, wish: Wish) -> Opened | InUse:
-        """Read a file, unless it is wished no more; runs on the thread."""
+        """Read a file, unless the request was cancelled; runs on the thread."""
 
         def report(share: float) -> None:
             if wish is not self._wish:

@@ -11,6 +11,7 @@ from PySide6.QtGui import QUndoCommand
 from app.session.changes import Change
 from app.session.document import Document
 from app.session.view import View
+from engine.character import Character
 from engine.project import Contents, Replayed
 from engine.take import Array, Take
 
@@ -21,7 +22,7 @@ class Session(QObject):
     Attributes
     ----------
     document : what is edited and kept
-    view : where one looks at it, and with which tool
+    view : what is shown of it, and the tool in use
     """
 
     changed = Signal(object)  # a Change
@@ -37,7 +38,7 @@ class Session(QObject):
         """Replace everything by a take, whose controls may have been measured before, (frames, 16)."""
         other_head = self.document.character is not None
         self.document.open(take, path, measured)
-        self._look_at_it_anew(other_head=other_head)
+        self._reset_view(other_head=other_head)
 
     def restore(
         self,
@@ -51,9 +52,18 @@ class Session(QObject):
 
         The controls, (frames, 16), are `measured` of the original as it is read there, and of that state.
         """
+        other_head = self.document.character is not None
         self.document.restore(contents, path, steps, state, measured)
-        self._look_at_it_anew()
+        self._reset_view(other_head=other_head)
 
-    def _look_at_it_anew(self, *, other_head: bool = False) -> None:
+    def play_on(self, head: Character | None) -> None:
+        """Set the head that the weights are for, and show the take on it; None is the bundled one."""
+        self.document.play_on(head)
+        self.view.show_on(head)
+
+    def _reset_view(self, *, other_head: bool) -> None:
+        """Show the start of another take, on the bundled head where the take before was for another one."""
         self.view.reset()
-        self.changed.emit(Change.TAKE | Change.CHARACTER if other_head else Change.TAKE)
+        if other_head:
+            self.view.head = None
+        self.changed.emit(Change.TAKE | Change.CHARACTER | Change.HEAD if other_head else Change.TAKE)

@@ -1,4 +1,4 @@
-"""What stands side by side in the preview: heads with numbered dots on their skin, or a capture's points alone."""
+"""The sides of the preview: heads with numbered markers on their skin, or a capture's points alone."""
 
 from __future__ import annotations
 

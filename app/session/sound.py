@@ -13,12 +13,12 @@ def beyond_the_take(session: Session) -> str:
         return ""
     begins_s = session.document.offset_s("audio")
     before_s, after_s = -begins_s, begins_s + session.document.audio.duration_s - session.document.take.duration_s
-    said = []
+    parts = []
     if before_s > SLACK_S:
-        said.append(f"begins {_seconds(min(before_s, session.document.audio.duration_s))} before the take")
+        parts.append(f"begins {_seconds(min(before_s, session.document.audio.duration_s))} before the take")
     if after_s > SLACK_S:
-        said.append(f"goes on {_seconds(min(after_s, session.document.audio.duration_s))} after the take's end")
-    return f"The sound {' and '.join(said)}; that is not heard." if said else ""
+        parts.append(f"goes on {_seconds(min(after_s, session.document.audio.duration_s))} after the take's end")
+    return f"The sound {' and '.join(parts)}; that is not heard." if parts else ""
 
 
 def _seconds(time_s: float) -> str:

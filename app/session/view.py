@@ -1,4 +1,4 @@
-"""What the user looks at and works with: the playhead, the frames and lanes on screen, the selection, the tool."""
+"""The view state: the playhead, the frames and lanes on screen, the selection, the tool and the shown head."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, Signal
 from app.session.changes import Change
 from app.session.curve_table import CURVES, FIRST_WEIGHT, weights_under
 from app.session.document import Document
+from engine.character import Character
 from engine.controls import CONTROLS
 from engine.editing import DEFAULT_BELIEVABILITY
 
@@ -17,11 +18,11 @@ BRUSH_S, RADII_S = 0.5, (0.01, 10.0)  # of the brush: at first, and from a singl
 
 
 class View(QObject):
-    """Where one looks at a document, and with what one works on it; nothing of it is kept in a project.
+    """Holds what is shown of a document and the tool in use; nothing of it is stored in a project.
 
     Parameters
     ----------
-    document : what is looked at
+    document : the document that is shown
 
     Attributes
     ----------
@@ -35,6 +36,7 @@ class View(QObject):
     radius_s, strength : the brush: to how far on either side it reaches, and its share of what is pulled
     believability : of edits, 0 where they go wherever curves are pulled, 1 where they do only what was recorded
     shows_removed : whether the Clean tool draws what it would remove
+    head : the head that the take is shown on; None for the bundled one
     """
 
     changed = Signal(object)  # a Change; the session passes it on
@@ -44,10 +46,11 @@ class View(QObject):
         self._document = document
         self.strength, self.believability, self.tool = 1.0, DEFAULT_BELIEVABILITY, "drag"
         self.shows_removed = True
+        self.head: Character | None = None
         self.reset()
 
     def reset(self) -> None:
-        """Look at the beginning of another take, with the same tool; tells nobody."""
+        """Show the beginning of another take, with the same tool; emits nothing."""
         take = self._document.take
         self.playhead = 0
         self.range = (0.0, float(min(len(take) - 1, FIRST_VIEW_S * take.fps)) or 1.0)
@@ -134,6 +137,14 @@ class View(QObject):
             elif shown:
                 self.lane = control
             self.changed.emit(Change.LANES | Change.LANE)
+
+    # --- the face
+
+    def show_on(self, head: Character | None) -> None:
+        """Show the take on another head; None is the bundled one."""
+        if head is not self.head:
+            self.head = head
+            self.changed.emit(Change.HEAD)
 
     # --- tools
 

@@ -75,7 +75,7 @@ class SpansSection(Section):
         self.accept_button, self.again_button, self.drop_button = (
             QPushButton("Keep"),
             QPushButton("Others"),
-            QPushButton("Drop"),
+            QPushButton("Discard"),
         )
         self.accept_button.setProperty("primary", True)
         self.accept_button.setToolTip("Keep this variant (Enter)")
@@ -115,6 +115,10 @@ class SpansSection(Section):
         self.fill_button.setProperty("primary", True)
         self.fill_button.setToolTip("Fill the chosen span (F)")
         self.note = quiet("")
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.fill_button, 1)
+        buttons.addWidget(self.remove_button, 1)
+        box.addLayout(buttons)  # above the settings: beneath them a low screen has no room
         for widget in (
             self.region,
             self.style_box,
@@ -123,8 +127,6 @@ class SpansSection(Section):
             self.guide_button,
             self.unguide_button,
             self._shift_row,
-            self.fill_button,
-            self.remove_button,
             self.note,
         ):
             box.addWidget(widget)
@@ -254,9 +256,9 @@ class SpansSection(Section):
     def _show(self) -> None:
         chosen, filling = self.chosen, self._filling
         self._chosen_box.setVisible(chosen is not None and not filling.variants)
-        made = bool(filling.variants)
+        any_variants = bool(filling.variants)
         for widget in (self.strip, self.seed, self.accept_button, self.again_button, self.drop_button):
-            widget.setVisible(made)
+            widget.setVisible(any_variants)
         self.seed.setText(filling.title)
         self.again_button.setEnabled(len(filling.variants) > 1)
         self.strip.show_variants(filling.variants, filling.chosen, first=filling.first)
@@ -274,10 +276,10 @@ class SpansSection(Section):
 
 def _named(title: str, box: QSpinBox) -> QWidget:
     """Return a number with its name before."""
-    made = QWidget()
-    row = QHBoxLayout(made)
+    row_widget = QWidget()
+    row = QHBoxLayout(row_widget)
     row.setContentsMargins(0, 0, 0, 0)
     row.addWidget(quiet(title), 1)
     row.addWidget(box)
     box.setAccessibleName(title)
-    return made
+    return row_widget

@@ -18,7 +18,7 @@ APART_PX = 9  # marks that would lie closer are one, of the heaviest
 
 @dataclass(frozen=True)
 class Mark:
-    """A flag where it is drawn, and how many others it stands for."""
+    """A flag where it is drawn, and how many others are drawn with it."""
 
     x: float
     flag: Flag
@@ -26,7 +26,7 @@ class Mark:
 
     @property
     def sentence(self) -> str:
-        """What to tell of it."""
+        """The text to show for it."""
         more = f" {self.others} more here: zoom in." if self.others else ""
         return f"{self.flag.sentence}{more}"
 
@@ -90,7 +90,7 @@ class FlagLane:
 
 
 def _draw(painter: QPainter, mark: Mark, box: QRectF, per_frame: float, colours: Palette) -> None:
-    """Draw a serious flag as a triangle, a notable one as a diamond, a slight one as a dot; a line tells how long it is."""
+    """Draw a serious flag as a triangle, a notable one as a diamond, a slight one as a dot; a line shows how long it is."""
     x, y, weight = mark.x, box.center().y(), mark.flag.weight
     shade = QColor(colours.lanes[5] if weight >= SERIOUS else colours.warning if weight >= NOTABLE else colours.quiet)
     length = (mark.flag.stop - mark.flag.start - 1) * per_frame

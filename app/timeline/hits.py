@@ -67,7 +67,7 @@ class Layout:
 
 
 class Grip(Enum):
-    """What a press takes hold of."""
+    """What a press grabs."""
 
     SPAN = auto()
     FLAG = auto()
@@ -96,7 +96,7 @@ class Hit:
     mark: Note | Pin | None = None
 
     def grip(self, *, selects: bool) -> Grip:
-        """Return what a press takes hold of; `selects` is whether it is one that selects."""
+        """Return what a press grabs; `selects` is whether it is one that selects."""
         for there, grip in ((self.span, Grip.SPAN), (self.flag, Grip.FLAG), (self.mark, Grip.MARK)):
             if there is not None:
                 return grip

@@ -86,7 +86,8 @@ def _draw_notes(
     for index, x in shown:
         painter.setBrush(QColor(colours.panel) if notes[index].resolved else colour)
         painter.drawEllipse(QPointF(x, y), 4.0, 4.0)
-    for (index, x), following in zip(shown, [*(x for _, x in shown[1:]), np.inf], strict=True):
+    nexts = [*(x for _, x in shown[1:]), np.inf]  # of none in sight there is no text either
+    for (index, x), following in zip(shown, nexts, strict=False):
         painter.setPen(QColor(colours.quiet if notes[index].resolved else colours.text))
         room = min(NOTE_PX, following - x - 14)
         if room > 24:
@@ -103,7 +104,7 @@ def _in_sight(starts: np.ndarray, stops: np.ndarray, box: QRectF) -> np.ndarray:
 
 
 def _apart(places: np.ndarray, box: QRectF) -> Iterator[tuple[int, float]]:
-    """Yield index and place, in pixels, of the marks that can be told from the one before; a text may reach in from the left."""
+    """Yield index and place, in pixels, of the marks that do not overlap the one before; a text may reach in from the left."""
     last = -np.inf
     for index in np.flatnonzero((places >= box.left() - NOTE_PX) & (places <= box.right() + 5)).tolist():
         x = float(places[index])

@@ -58,7 +58,7 @@ class Timeline(QWidget):
     """
 
     marked = Signal()  # the selection was drawn in the lane: it is to become a span
-    told = Signal(str)  # what is wrong at the flag that was clicked
+    message = Signal(str)  # what is wrong at the flag that was clicked
     slid = Signal()  # the sound was dragged to where it is shown
     menu_wanted = Signal(str, QPoint, str)  # kind of thing, where on the screen, what to say of it
 
@@ -191,7 +191,7 @@ class Timeline(QWidget):
     # --- the mouse
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Scrub on the ruler; in a lane take hold of what is there, or begin to mark a span; with Shift select."""
+        """Scrub on the ruler; in a lane grab what is there, or begin to mark a span; with Shift select."""
         if event.button() != Qt.MouseButton.LeftButton:
             return
         x, under, view = event.position().x(), self._hit(event.position()), self._session.view
@@ -206,10 +206,10 @@ class Timeline(QWidget):
             view.move_playhead(under.goes_to)
             self._scrubbing = grip in (Grip.PLAYHEAD, Grip.VISEME)
             if under.flag is not None:
-                self.told.emit(under.flag.sentence)
+                self.message.emit(under.flag.sentence)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Go on with what the press began; show by the pointer what a press would take hold of."""
+        """Continue what the press began; show by the pointer what a press would grab."""
         frame = round(self.frame_at(event.position().x()))
         if self.visemes.dragging:
             self.visemes.move(event.position().x())
@@ -269,7 +269,7 @@ class Timeline(QWidget):
         self.menu_wanted.emit(under.kind, event.globalPos(), under.sentence)
 
     def told_at(self, place: QPointF) -> str:
-        """Return what to tell of a place in the widget."""
+        """Return the tool tip of a place in the widget."""
         under = self._hit(place)
         if under.flag is not None:
             return under.flag.sentence
@@ -277,7 +277,7 @@ class Timeline(QWidget):
             replies = (f"↳ {reply.text}" for reply in under.mark.replies)
             return "\n".join([under.mark.text, f"{under.mark.author}, {under.mark.time}", *replies])
         on_visemes = under.lane == "visemes" and place.x() >= self._gutter
-        return (self.visemes.tell(place.x()) if on_visemes else "") or HINTS.get(under.lane, HINTS[""])
+        return (self.visemes.tool_tip(place.x()) if on_visemes else "") or HINTS.get(under.lane, HINTS[""])
 
     def _show_pointer(self, place: QPointF) -> None:
         self.setToolTip(tip(self.told_at(place)))

@@ -50,7 +50,7 @@ class Entry(QLineEdit):
         self.given.emit(text)
 
     def close_entry(self) -> None:
-        """Go away; being hidden it loses the focus and is told to once more."""
+        """Hide; hiding loses the focus, which calls this once more."""
         if not self._gone:
             self._gone = True
             self.closed.emit()
@@ -120,13 +120,13 @@ class VisemeEditing(QObject):
         return lane.at(self.time_at(x)) if lane is not None else None
 
     def edge_at(self, x: float) -> Edge | None:
-        """Return the boundary that the pointer would take hold of."""
+        """Return the boundary that a press at the pointer would grab."""
         lane, (box, (first_s, last_s)) = self._session.document.visemes, self._place()
         if lane is None:
             return None
         return lane.edge_near(self.time_at(x), EDGE_PX / max(1.0, box.width()) * (last_s - first_s))
 
-    def tell(self, x: float) -> str:
+    def tool_tip(self, x: float) -> str:
         """Return what to say of what lies under the pointer."""
         lane, index = self._session.document.visemes, self.cue_at(x)
         return describe(lane, index) if lane is not None and index is not None else ""
@@ -134,7 +134,7 @@ class VisemeEditing(QObject):
     # --- dragging a boundary
 
     def take(self, x: float) -> bool:
-        """Take hold of the boundary under the pointer, if there is one."""
+        """Grab the boundary under the pointer, if there is one."""
         lane, edge = self._session.document.visemes, self.edge_at(x)
         if lane is None or edge is None:
             return False
@@ -161,7 +161,7 @@ class VisemeEditing(QObject):
         self._host.update()
 
     def drop(self) -> bool:
-        """Let go of the boundary as if it had not been moved, and of what is typed; returns whether there was any."""
+        """Cancel the move of a boundary and what is typed; returns whether there was any."""
         held, self._drag = self._drag is not None or self.entry is not None, None
         if self.entry is not None:
             self.entry.close_entry()
@@ -256,7 +256,7 @@ class VisemeEditing(QObject):
         self.wanted.emit(name)
 
     def _push(self, before: VisemeLane, after: VisemeLane, title: str) -> None:
-        """Make one undo step, unless the lane has become another since it was taken hold of."""
+        """Push one undo step, unless the lane has changed since the boundary was grabbed."""
         if self._session.document.visemes is before:
             self._session.document.undo.push(VisemesCommand.of(self._session.document, after, title))
 
@@ -273,14 +273,14 @@ def _as_typed(lane: VisemeLane, index: int, text: str) -> VisemeLane:
     parts = text.split()
     if len(parts) not in (1, 3):
         raise EditError(f"{text.strip()[:40]!r} is not a viseme.", f"Type {SAYS}.")
-    said = renamed(lane, index, parts[0])
+    changed = renamed(lane, index, parts[0])
     if len(parts) == 1:
-        return said
+        return changed
     begin_s, end_s = _seconds(parts[1]), _seconds(parts[2])
     if not begin_s < end_s:
         raise EditError("A viseme must begin before it ends.")
-    begin, end = (*said.begin_of(index), begin_s), (*said.end_of(index), end_s)
-    later = begin_s > said.times_s[index, 0]  # what moves on needs room before it
+    begin, end = (*changed.begin_of(index), begin_s), (*changed.end_of(index), end_s)
+    later = begin_s > changed.times_s[index, 0]  # what moves on needs room before it
     for boundary in (end, begin) if later else (begin, end):
-        said = with_boundary(said, *boundary)
-    return said
+        changed = with_boundary(changed, *boundary)
+    return changed

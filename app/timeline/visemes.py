@@ -32,7 +32,7 @@ def group_of(label: str) -> int:
 
 
 def describe(lane: VisemeLane, index: int) -> str:
-    """Return what to tell of a cue."""
+    """Return the tool tip of a cue."""
     cue, (start_s, stop_s) = lane.cues[index], lane.times_s[index]
     label = plain(cue.label, longest=NAME_LENGTH) or "silence"
     group = list(GROUPS)[group_of(cue.label)]
@@ -47,7 +47,7 @@ def icon(name: str, colours: Palette) -> QIcon:
 
 
 def choices() -> list[tuple[str, str]]:
-    """Return each class and what to call it in a menu, with the phones that it stands for."""
+    """Return each class and its title in a menu, with its phones."""
     return [(name, f"{name}   {' '.join(CLASSES[name][:4])}") for name in NAMES]
 
 
@@ -57,7 +57,7 @@ class VisemeStrip:
     def __init__(self) -> None:
         self._lane: VisemeLane | None = None
         self._times_s = np.zeros(0)
-        self._said_s = np.zeros((0, 0))  # (groups, 2 cues) how long each group was said up to each begin and end
+        self._sums_s = np.zeros((0, 0))  # (groups, 2 cues) how long each group was said up to each begin and end
 
     def draw(self, painter: QPainter, lane: VisemeLane, place: Place, colours: Palette) -> None:
         """Draw the stretch of a lane that the edges of its place bound."""
@@ -101,17 +101,17 @@ class VisemeStrip:
         self._lane, self._times_s = lane, lane.times_s.reshape(-1)
         lasting = np.diff(lane.times_s, axis=1)[:, 0]
         groups = GROUP_OF[lane.classes]
-        said = np.zeros((len(GROUPS), 2 * len(lasting)))
+        sums_s = np.zeros((len(GROUPS), 2 * len(lasting)))
         for group in range(len(GROUPS)):
             total = np.cumsum(np.where(groups == group, lasting, 0.0))
-            said[group, 1::2] = total
-            said[group, 2::2] = total[:-1]
-        self._said_s = said
+            sums_s[group, 1::2] = total
+            sums_s[group, 2::2] = total[:-1]
+        self._sums_s = sums_s
 
     def _picture(self, edges_s: Array, colours: Palette) -> QImage:
         """Return an image one pixel high, a column for each pair of edges: the mixture of what is said in between."""
-        said = np.array([np.diff(np.interp(edges_s, self._times_s, total)) for total in self._said_s])
-        share = np.clip(said / np.maximum(np.diff(edges_s), 1e-12), 0.0, 1.0)
+        spoken_s = np.array([np.diff(np.interp(edges_s, self._times_s, total)) for total in self._sums_s])
+        share = np.clip(spoken_s / np.maximum(np.diff(edges_s), 1e-12), 0.0, 1.0)
         share[0] *= SILENT
         named = [QColor(name) for name in group_colours(colours)]
         shades = np.array([(shade.red(), shade.green(), shade.blue()) for shade in named], np.float64)

@@ -1,4 +1,4 @@
-"""The sound as a picture: what is loud stands out, and an hour is drawn as fast as a second."""
+"""Draws the waveform from peaks per block, so that an hour is drawn as fast as a second."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the toolbar tells a newcomer: as many whole hints as there is room for."""
+"""Shows a newcomer as many whole hints in the toolbar as there is room for."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Hints(Label):
         self.setIndent(GRID)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
 
-    def tell(self, hints: Sequence[str]) -> None:
+    def show_all(self, hints: Sequence[str]) -> None:
         """Show hints, the one that matters most first; none for nothing."""
         self._hints = tuple(hints)
         self.setToolTip("\n".join(hints))

@@ -106,6 +106,6 @@ def quiet(text: str) -> Label:
 
 def slider(lowest: int, highest: int) -> QSlider:
     """Return a horizontal slider."""
-    made = QSlider(Qt.Orientation.Horizontal)
-    made.setRange(lowest, highest)
-    return made
+    bar = QSlider(Qt.Orientation.Horizontal)
+    bar.setRange(lowest, highest)
+    return bar

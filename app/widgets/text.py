@@ -14,8 +14,8 @@ from engine.words import NAME_LENGTH, plain
 LABEL_LENGTH = 2000  # characters of a label of several lines
 TIP_LENGTH, TIP_WIDTH = 1000, 80  # characters of a tooltip, and of one of its lines
 CAPTION_LENGTH = 80  # characters of a button or a menu entry
-BREAK_EVERY = 20  # characters, in words of three times that and more
-_LONG_WORDS = re.compile(rf"\S{{{3 * BREAK_EVERY},}}")
+BREAK_EVERY = 12  # characters, in words of twice that and more
+_LONG_WORDS = re.compile(rf"\S{{{2 * BREAK_EVERY},}}")
 PLAIN = Qt.TextFormat.PlainText
 
 
@@ -41,7 +41,7 @@ class Name(Label):
 
     def setText(self, text: str) -> None:
         """Show a name in one line."""
-        super().setText(plain(text))
+        QLabel.setText(self, plain(text, longest=self._longest))  # no place to break it at
         self.setToolTip(tip(text) if len(text) > self._longest else "")
 
 
@@ -51,7 +51,7 @@ def _breakable(text: str) -> str:
 
 
 def caption(text: str) -> str:
-    """Return text for a button, a box to tick or a menu: of one line, where an ampersand stands for itself."""
+    """Return text for a button, a box to tick or a menu: of one line, where an ampersand is shown as one."""
     return plain(text, longest=CAPTION_LENGTH).replace("&", "&&")
 
 

@@ -1,4 +1,4 @@
-"""An event filter on the whole program, until it is let go."""
+"""An event filter on the whole program that can be removed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Watcher(QObject):
         if application is not None:
             application.installEventFilter(self)
 
-    def let_go(self) -> None:
+    def remove(self) -> None:
         """Watch no longer."""
         application = QApplication.instance()
         if application is not None:

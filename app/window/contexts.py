@@ -53,9 +53,9 @@ class Contexts(QObject):
         }
         return [*(kind for kind, is_there in there.items() if is_there), "curve"]
 
-    def _open(self, kind: str, at: QPoint, told: str = "") -> None:
+    def _open(self, kind: str, at: QPoint, heading: str = "") -> None:
         kinds = self.kinds_here() if kind == "here" else [kind]
-        self.menu = self._window.menus.open_context(kinds, at, told or self._told(kind))
+        self.menu = self._window.menus.open_context(kinds, at, heading or self._told(kind))
         self.menu.destroyed.connect(self._forget)
 
     def _forget(self) -> None:

@@ -31,7 +31,7 @@ BYSTANDERS = (QMenuBar, QScrollBar)  # a press on them changes nothing
 
 
 def is_entry(widget: QWidget) -> bool:
-    """Tell whether a press on a widget begins typing, or choosing text."""
+    """Return whether a press on a widget begins typing, or selecting text."""
     if isinstance(widget, QComboBox):
         return widget.isEditable()
     chosen = isinstance(widget, QLabel) and widget.focusPolicy() != Qt.FocusPolicy.NoFocus
@@ -91,9 +91,9 @@ class Focus(Watcher):
         assert isinstance(application, QApplication)
         application.focusChanged.connect(self._on_focus)
 
-    def let_go(self) -> None:
+    def remove(self) -> None:
         """Watch no longer."""
-        super().let_go()
+        super().remove()
         application = QApplication.instance()
         if isinstance(application, QApplication):
             application.focusChanged.disconnect(self._on_focus)
@@ -133,7 +133,7 @@ class Focus(Watcher):
         return False
 
     def _keeps(self, pressed: QWidget) -> bool:
-        """Tell whether a press leaves the keys to what Qt gives them to: an entry, a canvas, or what it does not change."""
+        """Return whether a press leaves the keyboard focus where Qt sets it: an entry, a canvas, or what it does not change."""
         widget: QWidget | None = pressed
         while widget is not None and widget is not self._window:
             if is_entry(widget) or widget in self._canvases or widget is self._lanes or isinstance(widget, BYSTANDERS):
@@ -142,6 +142,6 @@ class Focus(Watcher):
         return False
 
     def _on_focus(self, old: QWidget | None, new: QWidget | None) -> None:
-        """Let nobody be without keys: what had them was taken away."""
+        """Move the keyboard focus on where the widget that had it was removed."""
         if new is None and self._window.isActiveWindow() and QApplication.activePopupWidget() is None:
             self.give_back()

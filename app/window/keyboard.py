@@ -41,7 +41,7 @@ LEFT = frozenset({QEvent.Type.WindowDeactivate, QEvent.Type.ApplicationDeactivat
 
 
 class Keyboard(Watcher):
-    """Watches the keys of the whole program until it is let go.
+    """Watches the keys of the whole program until it is removed.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Keyboard(Watcher):
         return False
 
     def _counts(self) -> bool:
-        """Tell whether a letter is a key of the window, and not typed."""
+        """Return whether a letter is a shortcut of the window, and not typed."""
         typed = QApplication.focusWidget()
         return self._window.isActiveWindow() and (typed is None or not is_entry(typed))
 

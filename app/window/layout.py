@@ -15,7 +15,7 @@ SHARES_PX = (470, 710)  # of preview and curves, in a window as it was designed
 
 
 def lay_out(window: WindowParts) -> None:
-    """Put the toolbar on top, what is to be told beneath it, then preview, curves and inspector, then the status bar."""
+    """Lay out toolbar, notices, then preview, curves and inspector, then the status bar, from top to bottom."""
     window.preview.add_beneath(window.reference)
     middle = QHBoxLayout()
     middle.setSpacing(GRID)

@@ -63,11 +63,11 @@ class MainWindow(WindowParts):
         self.preferences.apply_all()
         self.resize(DESIGNED.boundedTo(self.screen().availableSize()))
         self.session.open(take, path)
-        self.files.imported = imported(take)
+        self.files.opener.imported = imported(take)
         self.show_opened()
 
     def do(self, name: str) -> None:
-        """Carry out an action of the table; the keys go back to the lanes."""
+        """Perform an action of the table; the keyboard focus returns to the lanes."""
         if name != "cancel":  # which would keep what is half typed
             self._focus.give_back()
         super().do(name)
@@ -100,15 +100,15 @@ class MainWindow(WindowParts):
         self.files.load(path)
 
     def show_opened(self) -> None:
-        """Show what was opened: stop playing, name it, and tell how it was read."""
+        """Show what was opened: stop playing, show its name and how it was read."""
         self.transport.run(0.0)
         self.notices.hide()
         self._show_title()
         self.status.show_take()
         from_file = self.keeper.path is None and self.session.document.path not in (None, DEMO_TAKE)
-        self.importing.tell(self.files.imported, shown=from_file)
+        self.importing.show_reading(self.files.opener.imported, shown=from_file)
         there = from_file and self.importing.there  # it has what was noticed
-        self.status.tell("" if there else " ".join(self.session.document.take.notices))
+        self.status.show_message("" if there else " ".join(self.session.document.take.notices))
         self.show_importing()
 
     def show_import(self) -> None:
@@ -145,7 +145,7 @@ class MainWindow(WindowParts):
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask for unsaved edits, wait until all is written, then end the threads."""
         if not self.closed:
-            self.files.when_safe(self._leave)
+            self.files.opener.when_safe(self._leave)
         event.setAccepted(self.closed)
 
     def _leave(self) -> None:
@@ -155,12 +155,12 @@ class MainWindow(WindowParts):
 
     def shut_down(self) -> None:
         """End the threads; the window cannot be used after."""
-        self._keyboard.let_go()
-        self._plain_text.let_go()
-        self._focus.let_go()
+        self._keyboard.remove()
+        self._plain_text.remove()
+        self._focus.remove()
         self.transport.run(0.0)
         self.session.document.undo.blockSignals(True)  # clearing itself at its end, it would still tell everyone
-        self.files.opening.close()
+        self.files.opener.opening.close()
         self.keeper.close()
         self.inference.close()
         self.media.close()
@@ -196,8 +196,8 @@ class MainWindow(WindowParts):
         self.actions_by_name["hit_exactly"].setChecked(not self.session.view.believability)
         self.actions_by_name["show_removed"].setChecked(self.session.view.shows_removed)
 
-    def wear(self, colours: theme.Palette) -> None:
-        """Take on a theme's colours."""
+    def apply_theme(self, colours: theme.Palette) -> None:
+        """Apply a theme's colours to every part."""
         self.colours = colours
         QApplication.setPalette(theme.qt_palette(colours))
         self.setStyleSheet(theme.style_sheet(colours))

@@ -53,11 +53,11 @@ class MissingMedia(QFrame):
             button.clicked.connect(partial(_called, do, kind))
             row.addWidget(button)
         later = QPushButton("Not now")
-        later.clicked.connect(partial(self._put_away, widget))
+        later.clicked.connect(partial(self._hide_row, widget))
         row.addWidget(later)
         return widget
 
-    def _put_away(self, row: QWidget, *_: bool) -> None:
+    def _hide_row(self, row: QWidget, *_: bool) -> None:
         row.hide()
         rows = [item.widget() for index in range(self._column.count()) if (item := self._column.itemAt(index))]
         self.setVisible(any(each is not None and not each.isHidden() for each in rows))

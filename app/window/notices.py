@@ -16,10 +16,10 @@ log = logging.getLogger(__name__)
 
 
 class Notices(QFrame):
-    """One sentence and what to do about it; it goes by itself when it was there long enough to be read.
+    """Shows a sentence and what to do about it, and hides itself after the time it takes to read.
 
-    Escape and a button put it away at once. It stays while the pointer is on it or another window is worked in, and what
-    endangers the work stays until it is over: `hold`.
+    Escape and a button hide it at once. It stays while the pointer is on it or another window is active, and a danger to
+    the work stays until it is over: `warn_until_solved`.
     """
 
     def __init__(self) -> None:
@@ -33,8 +33,8 @@ class Notices(QFrame):
         row.addWidget(self.text, 1)
         self.dismiss = QToolButton()
         self.dismiss.setText("✕")
-        self.dismiss.setToolTip("Put this away (Escape)")
-        self.dismiss.setAccessibleName("Put the notice away")
+        self.dismiss.setToolTip("Hide (Escape)")
+        self.dismiss.setAccessibleName("Hide the notice")
         self.dismiss.clicked.connect(self.hide)
         row.addWidget(self.dismiss, 0, Qt.AlignmentFlag.AlignTop)
         self.fading = QTimer(self, singleShot=True)
@@ -47,26 +47,26 @@ class Notices(QFrame):
         self._show(self.text.text(), sentence, stays=self._stays)
 
     def withdraw(self, sentence: str) -> None:
-        """Put a sentence away that is true no more, if it is still shown."""
+        """Hide a sentence that is no longer true, if it is still shown."""
         if self.text.text().startswith(sentence):
             self.hide()
 
-    def tell(self, sentence: str, advice: str = "") -> None:
+    def warn(self, sentence: str, advice: str = "") -> None:
         """Show a sentence and an advice for as long as it takes to read them."""
         log.warning("%s %s", sentence, advice)
         self._show(sentence, advice, stays=False)
 
-    def hold(self, sentence: str, advice: str = "") -> None:
-        """Show a sentence and an advice until they are put away, withdrawn or replaced."""
+    def warn_until_solved(self, sentence: str, advice: str = "") -> None:
+        """Show a sentence and an advice until they are hidden, withdrawn or replaced."""
         log.warning("%s %s", sentence, advice)
         self._show(sentence, advice, stays=True)
 
-    def say(self, sentence: str, advice: str = "") -> None:
-        """Show what is no fault, such as what was written."""
+    def inform(self, sentence: str, advice: str = "") -> None:
+        """Show what is no error, such as the name of a written file."""
         self._show(sentence, advice, stays=False)
 
-    def put_away(self) -> bool:
-        """Put the notice away; returns whether there was any."""
+    def hide_shown(self) -> bool:
+        """Hide the notice; returns whether there was any."""
         shown = self.isVisible()
         self.hide()
         return shown
@@ -77,7 +77,7 @@ class Notices(QFrame):
         self.fading.stop()
 
     def leaveEvent(self, event: QEvent) -> None:
-        """Go a while after the pointer left."""
+        """Hide a while after the pointer left."""
         super().leaveEvent(event)
         self._begin_to_fade()
 
@@ -94,7 +94,7 @@ class Notices(QFrame):
             self.fading.start(SHOWN_MS + READ_MS * len(self.text.text()))
 
     def _fade(self) -> None:
-        """Go, unless nobody looks: then wait on."""
+        """Hide, unless the window is not active: then wait on."""
         if self.window().isActiveWindow():
             self.hide()
         else:

@@ -83,7 +83,7 @@ class WindowParts(QMainWindow):
         session = self.session
         self.files = FileActions(session, self.keeper, self.media, self.settings, self)
         self.sound = MediaActions(session, self.media, self)
-        self.status = StatusBar(session, self.keeper, self.files.opening, self.media)
+        self.status = StatusBar(session, self.keeper, self.files.opener.opening, self.media)
         self.notices, self.missing = Notices(), MissingMedia()
         self.importing = ImportLine(session)
         self.preview, self.reference = PreviewPanel(session, self.inference), ReferencePanel(session)
@@ -112,8 +112,9 @@ class WindowParts(QMainWindow):
         self.retarget, self.review = RetargetActions(session, self), ReviewActions(session, self.transport, self)
         review = self.review
         sections = (
-            *(self.brush, self.value, self.pins, self.clean, self.live, *self.retarget.sections),
-            *(self.smoothing, self.spans, review.queue, review.section, review.handing_on),
+            *(self.brush, self.value, self.clean, self.live, *self.retarget.sections),
+            *(self.smoothing, self.spans, self.pins),  # the pose's sliders last: above Fill they hide it on low screens
+            *(review.queue, review.section, review.handing_on),
             *(self.facts, self.flags, self.notes, review.verdict, self.attached),
         )
         self.inspector = Inspector(session, sections)
@@ -127,5 +128,5 @@ class WindowParts(QMainWindow):
         self._owners = owners_of((entry.name for entry in ACTIONS), owners)
 
     def do(self, name: str) -> None:
-        """Carry out an action of the table."""
+        """Perform an action of the table."""
         getattr(self._owners[name], name)()

@@ -34,7 +34,7 @@ def start(path: Path | None) -> int:
     window = MainWindow(read_take(DEMO_TAKE), DEMO_TAKE)
     _report_to(window)
     if path is not None:
-        window.files.opening.failed.connect(lambda *_: _tell_what_is_open(window))
+        window.files.opener.opening.failed.connect(lambda *_: _tell_what_is_open(window))
         window.load(path)
     window.show()
     QTimer.singleShot(0, window.files.offer_left_over)
@@ -47,13 +47,13 @@ def _tell_what_is_open(window) -> None:  # type: ignore[no-untyped-def]
 
 
 def _report_to(window) -> None:  # type: ignore[no-untyped-def]
-    """Send what nobody caught to the log and one sentence to the user; the work stays open."""
+    """Write uncaught errors to the log and show one sentence; the work stays open."""
 
     def report(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         logging.getLogger("app").error("uncaught", exc_info=(kind, error, trace))
         if isinstance(error, EngineError):
-            window.notices.tell(error.sentence, error.advice)
+            window.notices.warn(error.sentence, error.advice)
         else:
-            window.notices.tell("Something went wrong; your take is as it was.", "Help > About says where the log is.")
+            window.notices.warn("Something went wrong; your take is as it was.", "Help > About says where the log is.")
 
     sys.excepthook = report

@@ -20,7 +20,7 @@ from engine.words import counted, plain
 
 LONGEST = 40  # characters of a name in this line
 NAMES = ("take", "rate", "length", "place", "pace", "notice", "engine", "sound", "saved", "speed")
-TOLD_MS = 12_000  # how long something is told in passing
+TOLD_MS = 12_000  # how long a passing message is shown
 LATENCIES = 20  # that the median is taken of
 
 
@@ -29,7 +29,7 @@ class StatusBar(QFrame):
 
     Parameters
     ----------
-    session, keeper, opening, media : what is told of
+    session, keeper, opening, media : what is shown
     """
 
     def __init__(self, session: Session, keeper: Keeper, opening: Opening, media: Media) -> None:
@@ -38,7 +38,7 @@ class StatusBar(QFrame):
         self._session, self._keeper, self._opening, self._media = session, keeper, opening, media
         self._latencies_ms: list[float] = []
         self.in_frames = False
-        self._sound: Audio | None = None  # whose length was told
+        self._sound: Audio | None = None  # whose length was shown
         self._passing = QTimer(self, singleShot=True)
         self._labels = {name: Name(longest=LONGEST) if name == "take" else Label() for name in NAMES}
         self._passing.timeout.connect(self._labels["notice"].clear)
@@ -72,22 +72,22 @@ class StatusBar(QFrame):
         return self._labels[name]
 
     def engine_ready(self) -> None:
-        """Say no longer that the networks are loaded."""
+        """Remove the message that the networks are loading."""
         self._labels["engine"].setText("")
 
-    def tell(self, text: str) -> None:
-        """Tell something in passing: it goes when it was there long enough to be read."""
+    def show_message(self, text: str) -> None:
+        """Show a message for some seconds."""
         self["notice"].setText(text)
         self["notice"].setToolTip(tip(text))
         self._passing.start(TOLD_MS)
 
-    def hold(self, text: str) -> None:
-        """Tell something until something else is told."""
+    def show_lasting(self, text: str) -> None:
+        """Show a message until the next one."""
         self._passing.stop()
         self["notice"].setText(text)
 
     def show_take(self, *_: object) -> None:
-        """Tell what is open."""
+        """Show the name, rate and length of the open take."""
         take = self._session.document.take
         self["take"].setText(self._session.document.name)
         self["rate"].setText(f"{take.fps:g} fps")
@@ -96,25 +96,25 @@ class StatusBar(QFrame):
         self._show_saved()
 
     def show_place(self) -> None:
-        """Tell where the playhead is."""
+        """Show where the playhead is."""
         frame, fps = self._session.view.playhead, self._session.document.take.fps
         self["place"].setText(f"frame {frame:,}" if self.in_frames else f"{timecode(frame / fps, fps)} · {frame}")
 
     def show_speed(self, speed: float) -> None:
-        """Tell how fast the take plays where that is not its own speed; 0 where it stands."""
+        """Show how fast the take plays where that is not its own speed; 0 is paused."""
         names = {0.25: "¼", 0.5: "½"}
-        told = f"{names.get(abs(speed), f'{abs(speed):g}')}× speed"
-        self["pace"].setText("" if speed in (0.0, 1.0) else f"{told}, backwards" if speed < 0 else told)
+        speed_text = f"{names.get(abs(speed), f'{abs(speed):g}')}× speed"
+        self["pace"].setText("" if speed in (0.0, 1.0) else f"{speed_text}, backwards" if speed < 0 else speed_text)
 
     def count_in_frames(self, on: bool) -> None:
-        """Tell time in frames, or in timecode too."""
+        """Show time in frames, or in timecode too."""
         self.in_frames = on
         self.show_place()
 
     def timed(self, spent_ms: float) -> None:
-        """Tell how long it took from the mouse to the picture."""
+        """Show the median time from the mouse event to its picture."""
         self._latencies_ms = [*self._latencies_ms[1 - LATENCIES :], spent_ms]
-        self["speed"].setText(f"drag → preview {np.median(self._latencies_ms):.0f} ms")
+        self["speed"].setText(f"preview {np.median(self._latencies_ms):.0f} ms")
 
     def _on_change(self, change: Change) -> None:
         if change & Change.READING:
@@ -126,15 +126,15 @@ class StatusBar(QFrame):
         if change & Change.MEDIA and self._session.document.audio is not self._sound:
             self._sound = self._session.document.audio
             if beyond := beyond_the_take(self._session):
-                self.tell(beyond)
+                self.show_message(beyond)
 
     def _show_saved(self) -> None:
         saving, opening = self._keeper.saving, self._opening.path
         saved = "saved" if self._keeper.path else ""
-        told = "edits not saved yet" if self._session.document.edited else saved
+        state = "edits not saved yet" if self._session.document.edited else saved
         under_way = [f"saving {plain(saving.name, longest=LONGEST)}…"] if saving else []
         under_way += [f"opening {plain(opening.name, longest=LONGEST)}…"] if opening else []
-        self["saved"].setText(" ".join(under_way) or told)
+        self["saved"].setText(" ".join(under_way) or state)
 
     def _show_saving(self) -> None:
         self.saving.follow(self._keeper.saving is not None)

@@ -1,4 +1,4 @@
-"""Which part of the window hears of what: a table of signals and of the methods that they call.
+"""Connects the parts of the window: tables of signals and of the methods that they call.
 
 Methods, and no lambdas: a connection keeps what a lambda holds for as long as its sender lives, and the window, which
 owns the senders, would never be freed.
@@ -23,30 +23,30 @@ def connect(window: MainWindow) -> None:
     for clock in (window.timeline, window.status):
         window.preferences.counted.connect(clock.count_in_frames)
     window.edits.cutoff_hz = window.smoothing.cutoff.value
-    window.edits.let_go = window.timeline.visemes.drop
-    window.edits.put_away = window.notices.put_away
+    window.edits.cancel_move = window.timeline.visemes.drop
+    window.edits.hide_notice = window.notices.hide_shown
     window.edits.stop_else = window.retarget.retargeting.cancel
     window.time.looping = window.actions_by_name["loop"].isChecked
     for signed in (window.notes, window.flags, window.review.verdict):
         signed.author = window.author
     window.notes.drawn = window.preview.drawn
-    window.review.open_take, window.review.load = window.files.open_then, window.files.load
+    window.review.open_take, window.review.load = window.files.opener.open_take, window.files.load
 
 
 def _notices(window: MainWindow) -> Rows:
-    """What cannot be done is told in a notice, what was done in the status bar."""
+    """Connect errors to the notices, and messages to the status bar."""
     panels = (window.preview, window.media, window.reference, window.live, window.retarget, window.review, window.flags)
     parts = (*panels, window.inference, window.filling, window.visemes, window.timeline.visemes, window.marks)
     speakers = (window.edits, window.time, window.timeline, window.marks, window.review)
     return (
-        *((part.failed, window.notices.tell) for part in parts),
-        *((speaker.told, window.status.tell) for speaker in speakers),
-        (window.keeper.failed, window.notices.hold),
+        *((part.failed, window.notices.warn) for part in parts),
+        *((speaker.message, window.status.show_message) for speaker in speakers),
+        (window.keeper.failed, window.notices.warn_until_solved),
         (window.keeper.mended, window.notices.withdraw),
-        (window.files.told, window.notices.tell),
-        (window.files.wrote, window.notices.say),
-        (window.spans.refused, window.notices.tell),
-        (window.importing.refused, window.notices.tell),
+        (window.files.message, window.notices.warn),
+        (window.files.wrote, window.notices.inform),
+        (window.spans.refused, window.notices.warn),
+        (window.importing.refused, window.notices.warn),
         (window.preview.timed, window.status.timed),
         (window.inference.ready, window.status.engine_ready),
     )
@@ -59,7 +59,7 @@ def _opening(window: MainWindow) -> Rows:
         (window.keeper.kept, window.live.recording.settle),
         (window.importing.chosen, window.curves.setFocus),
         (window.importing.hide_button.clicked, window.show_importing),
-        (window.preferences.themed, window.wear),
+        (window.preferences.themed, window.apply_theme),
     )
 
 
@@ -108,8 +108,7 @@ def _retarget(window: MainWindow) -> Rows:
         (window.preview.dot_clicked, window.retarget.placing.choose),
         (window.files.capture_dropped, window.retarget.take_in),
         (window.files.character_chosen, retargeting.choosing.show_on),
-        (retargeting.choosing.head_read, window.preview.show_character),
-        (retargeting.choosing.told, window.status.hold),
+        (retargeting.choosing.message, window.status.show_lasting),
     )
 
 

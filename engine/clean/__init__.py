@@ -1,1 +1,1 @@
-"""Removing the tracker and keeping the actor: a causal recurrent network for any frame rate (BSS20b)."""
+"""Denoising of tracked weights: a causal recurrent network for any frame rate (BSS20b)."""

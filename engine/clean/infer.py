@@ -1,4 +1,4 @@
-"""Cleaning with the trained network: one frame at a time for a live stream, or a recorded take (BSS20b)."""
+"""Inference with the cleaning network, one frame at a time, for a live stream or a recorded take (BSS20b)."""
 
 from __future__ import annotations
 
@@ -9,55 +9,63 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from engine.clean.landing import Landing, advance
-from engine.clean.landing import still as no_landing
+from engine.clean.inertialisation import Inertialisation, advance, no_offset
 from engine.clean.network import _OFFSET, _RATE, CleanNetwork, from_config
 from engine.models.checkpoint import MODELS, load_model, rebuilt
 from engine.take import MODEL_FPS, SHAPES
 
 Floats = npt.NDArray[np.float32]
 _SHAPES = len(SHAPES)
-BELIEVABLE = (-1.0, 2.0)  # a weight beyond these is a fault of the tracker or of the network, not a face
-FROZEN_S = 1.0  # a frame that comes again for longer than this is a tracker that stands, not a face that rests
-LEAD_S = 0.008  # how far ahead a moving shape is shown, at most: the estimate trails the face by about as much
-LEAD_FPS = 60.0  # below this rate a speed is old news, and showing it ahead would put corners into the motion
-SLOW_PER_S = 0.5  # what is slower than this is not shown ahead: at rest it would be jitter
-STEP_S = (1e-3, 0.5)  # a longer gap is taken for this long: no face extrapolates further
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """Settings of the inference; ranges tried were not recorded."""
+
+    plausible: tuple[float, float] = (-1.0, 2.0)  # weight; beyond it is a fault of tracker or network, not a face
+    frozen_s: float = 1.0  # seconds of identical frames after which the tracker counts as frozen
+    lead_s: float = 0.008  # seconds by which a moving shape is extrapolated, about the lag of the estimate
+    lead_fps: float = 60.0  # below this rate a velocity is outdated, and a full lead would put corners into the motion
+    slow_per_s: float = 0.5  # weight per second; slower motion is not extrapolated, which would be jitter at rest
+    step_s: tuple[float, float] = (1e-3, 0.5)  # seconds, range of time steps: the longest a face is extrapolated
+
+
+TUNING = Tuning()
 
 
 @dataclass(frozen=True, eq=False)
 class CleanState:
-    """What one frame hands to the next.
+    """The recurrent state from one frame to the next.
 
     Attributes
     ----------
     weights : (52,) float32, the estimate
     velocity : (52,) float32, its derivative per second
     hidden, cell : (layers, hidden) float32 of the recurrent layers
-    landing : the way back after a lost run
-    ahead : (52,) float32, how far the estimate is shown ahead of itself, so that it does not trail the face
-    seen : (52,) float32, the last frame with a face
-    frozen_s : for how long the tracker has sent that very frame, seconds
+    offset : inertialisation after a lost run
+    lead : (52,) float32, extrapolation of the estimate that makes up for its lag
+    observed : (52,) float32, the last frame with a face
+    frozen_s : seconds for which the tracker has sent that same frame
     """
 
     weights: Floats
     velocity: Floats
     hidden: Floats
     cell: Floats
-    landing: Landing
-    ahead: Floats
-    seen: Floats
+    offset: Inertialisation
+    lead: Floats
+    observed: Floats
     frozen_s: float = 0.0
 
     @property
-    def shown(self) -> Floats:
-        """(52,) float32, 0..1: the estimate a moment ahead, or the way back to it after a lost run."""
-        shown: Floats = np.clip(self.weights + self.landing.offset + self.ahead, 0.0, 1.0)
-        return shown
+    def output(self) -> Floats:
+        """The estimate with its offset and lead, (52,) float32 in 0..1."""
+        output: Floats = np.clip(self.weights + self.offset.offset + self.lead, 0.0, 1.0)
+        return output
 
 
 class Cleaner:
-    """`CleanNetwork` in plain numpy for one stream: a frame costs some forty microseconds instead of torch's hundreds.
+    """Runs `CleanNetwork` in numpy for one stream: a frame takes some forty microseconds instead of torch's hundreds.
 
     Parameters
     ----------
@@ -85,18 +93,18 @@ class Cleaner:
         still = np.zeros((self._config.layers, self._config.hidden), np.float32)
         first = np.clip(weights, 0.0, 1.0).astype(np.float32)
         rest = np.zeros(_SHAPES, np.float32)
-        return CleanState(first, rest, still, still, no_landing(_SHAPES), rest, first)
+        return CleanState(first, rest, still, still, no_offset(_SHAPES), rest, first)
 
-    def step(self, seen: npt.ArrayLike | None, step_s: float, state: CleanState) -> CleanState:
-        """Advance one frame: state in, state out.
+    def step(self, observed: npt.ArrayLike | None, step_s: float, state: CleanState) -> CleanState:
+        """Advance the state by one frame (BSS20b equations 1 and 2).
 
         Parameters
         ----------
-        seen : (52,) the tracker's weights; None where it had no face. Weights that no face has count as no face.
+        observed : (52,) the tracker's weights; None where it had no face. Implausible weights count as no face.
         step_s : time since the frame before, seconds
         """
-        step = np.float32(min(max(step_s, STEP_S[0]), STEP_S[1]))
-        frame = believable(seen)
+        step = np.float32(min(max(step_s, TUNING.step_s[0]), TUNING.step_s[1]))
+        frame = plausible(observed)
         present = np.float32(frame is not None)
         innovation = np.zeros(_SHAPES, np.float32)
         if frame is not None:
@@ -111,38 +119,38 @@ class Cleaner:
         follow = -np.expm1(-step * np.float32(_RATE) * np.logaddexp(np.float32(0), rate)) * present
         moved = state.weights + follow * (innovation + np.float32(_OFFSET) * offset) + step * motion
         frozen_s = 0.0
-        if frame is not None and np.array_equal(frame, state.seen):
+        if frame is not None and np.array_equal(frame, state.observed):
             frozen_s = state.frozen_s + float(step)
-            moved = state.weights + np.float32(_awake(frozen_s)) * (moved - state.weights)
+            moved = state.weights + np.float32(_frozen_gain(frozen_s)) * (moved - state.weights)
         weights = np.clip(moved, 0.0, 1.0)
         jump = weights - state.weights
-        landing = advance(state.landing, jump, state.velocity, float(step), present=frame is not None)
-        last = state.seen if frame is None else frame
-        returns = frame is not None and state.landing.gap_s > 0  # such a leap is no motion
-        ahead = state.ahead if returns else _ahead(jump / step, step)
-        return CleanState(weights, jump / step, hidden, cell, landing, ahead, last, frozen_s)
+        offset_after = advance(state.offset, jump, state.velocity, float(step), present=frame is not None)
+        last = state.observed if frame is None else frame
+        returns = frame is not None and state.offset.gap_s > 0  # the jump that ends a lost run is no motion
+        lead = state.lead if returns else _lead(jump / step, step)
+        return CleanState(weights, jump / step, hidden, cell, offset_after, lead, last, frozen_s)
 
 
-def _ahead(velocity: Floats, step_s: np.float32) -> Floats:
-    """Return how far moving shapes get in the time that the estimate trails them."""
-    lead_s = np.float32(LEAD_S * min(1.0, 1.0 / (LEAD_FPS * float(step_s))) ** 2)
-    return lead_s * (velocity - np.clip(velocity, -SLOW_PER_S, SLOW_PER_S))
+def _lead(velocity: Floats, step_s: np.float32) -> Floats:
+    """Return the extrapolation of moving shapes by the lag of the estimate: ``lead_s`` times the speed beyond slow."""
+    lead_s = np.float32(TUNING.lead_s * min(1.0, 1.0 / (TUNING.lead_fps * float(step_s))) ** 2)
+    return lead_s * (velocity - np.clip(velocity, -TUNING.slow_per_s, TUNING.slow_per_s))
 
 
-def _awake(frozen_s: float) -> float:
-    """Return how much the estimate still moves, 1..0, when the tracker has long sent one and the same frame.
+def _frozen_gain(frozen_s: float) -> float:
+    """Return the gain of the estimate's motion, 1..0, which decays while the tracker sends the same frame.
 
-    A living face is never quite still; a frozen stream would otherwise leave the network circling round it for ever.
+    A tracked face is never quite still; a frozen stream would otherwise leave the network oscillating for ever.
     """
-    return float(np.exp(-max(0.0, frozen_s - FROZEN_S) / FROZEN_S))
+    return float(np.exp(-max(0.0, frozen_s - TUNING.frozen_s) / TUNING.frozen_s))
 
 
-def believable(seen: npt.ArrayLike | None) -> Floats | None:
-    """Return a frame clamped to 0..1, or None where it holds what no face has: not a number, or far out of range."""
-    if seen is None:
+def plausible(observed: npt.ArrayLike | None) -> Floats | None:
+    """Return a frame clipped to 0..1, or None where it has a value that is not a number or far out of range."""
+    if observed is None:
         return None
-    frame = np.asarray(seen, np.float64)
-    if not (frame.min() >= BELIEVABLE[0] and frame.max() <= BELIEVABLE[1]):  # false for NaN too
+    frame = np.asarray(observed, np.float64)
+    if not (frame.min() >= TUNING.plausible[0] and frame.max() <= TUNING.plausible[1]):  # false for NaN too
         return None
     return np.clip(frame, 0.0, 1.0).astype(np.float32)
 

@@ -1,4 +1,4 @@
-"""The causal recurrent network (BSS20b section 3), closed over its own output, one frame at a time."""
+"""The causal recurrent network of BSS20b section 3, which feeds its estimate back, one frame at a time."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from torch import Tensor, nn
 from engine.take import MODEL_FPS, SHAPES
 
 _SHAPES = len(SHAPES)
-_RATE, _OFFSET = 60.0, 0.1  # per second and in weight: what an output of one stands for
+_RATE, _OFFSET = 60.0, 0.1  # units of the network's outputs: per second, and weight
 
 
 @dataclass(frozen=True)
 class CleanConfig:
-    """Width and number of the recurrent layers; `first_rate_per_s` is how eagerly an untrained network follows."""
+    """Width and number of the recurrent layers; `first_rate_per_s` is the rate at which an untrained network follows."""
 
     hidden: int = 128
     layers: int = 1
@@ -24,7 +24,7 @@ class CleanConfig:
 
 
 class State(NamedTuple):
-    """What one frame hands to the next.
+    """The recurrent state from one frame to the next.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class State(NamedTuple):
     cell: Tensor
 
     def detached(self) -> State:
-        """Return the same state, through which no gradient flows."""
+        """Return the same state without gradient."""
         return State(*(part.detach() for part in self))
 
 
@@ -47,8 +47,8 @@ class CleanNetwork(nn.Module):
     """Predicts the derivative of the estimate from the estimate, its derivative and the corrective derivative (eq. 1, 2).
 
     The input is first restored frame by frame by a linear map, which starts as ridge regression. The derivative has
-    three parts: the way to the restored input and a correction of it, both at a learned rate, and the face's own
-    motion, which alone is left on a frame that the tracker lost.
+    three parts: the difference to the restored input and a correction of it, both at a learned rate, and the face's own
+    motion, which is the only part on a lost frame.
     """
 
     def __init__(self, config: CleanConfig) -> None:
@@ -69,18 +69,20 @@ class CleanNetwork(nn.Module):
         still = weights.new_zeros(self.config.layers, len(weights), self.config.hidden)
         return State(weights, torch.zeros_like(weights), still, still)
 
-    def forward(self, seen: Tensor, present: Tensor, step_s: Tensor, state: State, *, dropout: float = 0.0) -> State:
-        """Advance one frame.
+    def forward(
+        self, observed: Tensor, present: Tensor, step_s: Tensor, state: State, *, dropout: float = 0.0
+    ) -> State:
+        """Advance the state by one frame (equations 1 and 2).
 
         Parameters
         ----------
-        seen : (batch, 52) the tracker's weights, 0..1; of no effect where `present` is 0
+        observed : (batch, 52) the tracker's weights, 0..1; of no effect where `present` is 0
         present : (batch, 1) 1 where the tracker had a face, else 0
         step_s : (batch, 1) time since the frame before, seconds
         dropout : share of each layer's output dropped in training
         """
-        innovation = (seen + self.restore(seen) - state.weights) * present
-        # What is fed back is looked at, not learnt through: gradients round the loop would grow by 1 / step a frame.
+        innovation = (observed + self.restore(observed) - state.weights) * present
+        # No gradient through the feedback: round the loop it would grow by 1 / step each frame.
         x = self.enter(_features(state, innovation, present, step_s).detach())
         hidden, cell = [], []
         for layer, recurrent in enumerate(self.cells):
@@ -98,7 +100,7 @@ class CleanNetwork(nn.Module):
 
 
 def _features(state: State, innovation: Tensor, present: Tensor, step_s: Tensor) -> Tensor:
-    """Return (batch, 4 * 52 + 2): derivatives are squeezed by asinh, so that a spike is large but not blinding."""
+    """Return the input of the recurrent layers, (batch, 4 * 52 + 2); asinh compresses the derivatives of spikes."""
     return torch.cat(
         [
             2 * state.weights,
@@ -113,21 +115,21 @@ def _features(state: State, innovation: Tensor, present: Tensor, step_s: Tensor)
 
 
 def run(
-    network: CleanNetwork, seen: Tensor, present: Tensor, step_s: Tensor, state: State, *, dropout: float = 0.0
+    network: CleanNetwork, observed: Tensor, present: Tensor, step_s: Tensor, state: State, *, dropout: float = 0.0
 ) -> tuple[Tensor, State]:
     """Clean whole sequences: (batch, frames, 52), (batch, frames, 1) twice -> (batch, frames, 52) and the last state."""
-    made = []
-    for index in range(seen.shape[1]):
-        state = network(seen[:, index], present[:, index], step_s[:, index], state, dropout=dropout)
-        made.append(state.weights)
-    return torch.stack(made, dim=1), state
+    estimates = []
+    for index in range(observed.shape[1]):
+        state = network(observed[:, index], present[:, index], step_s[:, index], state, dropout=dropout)
+        estimates.append(state.weights)
+    return torch.stack(estimates, dim=1), state
 
 
 def config_of(network: CleanNetwork) -> dict[str, Any]:
-    """Return what rebuilds a network."""
+    """Return a network's configuration, from which `from_config` builds it again."""
     return asdict(network.config)
 
 
 def from_config(config: dict[str, Any]) -> CleanNetwork:
-    """Build a network from what `config_of` returned."""
+    """Build a network from a configuration that `config_of` returned."""
     return CleanNetwork(CleanConfig(**config))

@@ -1,4 +1,4 @@
-"""Drags: curves asked of the face's controls, and the face that meets them (BSBS19 section 4)."""
+"""Drags: target curves of the face's controls, and the weights that meet them (BSBS19 section 4)."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ FARTHEST_MM = 1000.0  # more than this is a slip; far more would overflow
 def ask(
     controls: Array, control: str, frames: tuple[int, int], change: Change, amount: float, *, fps: float
 ) -> tuple[int, Array]:
-    """Return a range's first frame and asked curves, (n, 16): one control changed, and beside it eased in and out.
+    """Return a range's first frame and target curves, (n, 16), that change one control and ease in and out beside it.
 
     `controls` are the take's measured curves, (frames, 16). Beside the range, its change at the nearer end fades over
-    `EASE_S`: a curve that is already as asked stays as it is there too. The range ends where its last frame does, so
-    that a take at another rate is asked the same. Raises `EditError` for an amount that no face could take.
+    `EASE_S`: a curve that meets the target already stays as it is there too. The range ends where its last frame does, so
+    that a take at another rate has the same targets. Raises `EditError` for an amount that no face could take.
     """
     if not abs(amount) <= FARTHEST_MM:
         raise EditError(f"The amount of a change must be a number within {FARTHEST_MM:,.0f}.")
@@ -40,27 +40,26 @@ def ask(
     asked = controls[first:last].copy()
     column = control_index(control)
     curve = asked[:, column]
-    wanted = {"set": np.full_like(curve, amount), "add": curve + amount, "scale": curve * amount}[change]
+    target = {"set": np.full_like(curve, amount), "add": curve + amount, "scale": curve * amount}[change]
     frame = np.arange(first, last)
     inside = np.clip(frame, frames[0], min(frames[1], last - 1))
     away = np.abs(frame - inside) / (EASE_S * fps)
-    bent = curve + ease(1 - away) * (wanted - curve)[inside - first]
-    asked[:, column] = bent if ALL_CONTROLS[column].signed else np.maximum(0.0, bent)
+    moved = curve + ease(1 - away) * (target - curve)[inside - first]
+    asked[:, column] = moved if ALL_CONTROLS[column].signed else np.maximum(0.0, moved)
     return first, asked
 
 
 class Dragger:
-    """Bends one take by its control curves (BSBS19 section 4), as often as the pointer moves.
+    """Moves a take's control curves to targets (BSBS19 section 4), as often as the pointer moves.
 
-    What the face becomes is a function of the take and of what is asked alone (`engine.regress.solve`), whatever was
-    asked on the way. Only the frames that are asked for, and a few beside them, are looked at, whatever the length of
-    the take.
+    The result depends on the take and the targets alone (`engine.regress.solve`), not on earlier calls. Only frames with
+    a target and a few beside them are computed, whatever the length of the take.
 
     Parameters
     ----------
     take : what is edited
     controls : its sixteen curves, (frames, 16), if they have been measured already
-    asked : what edits before have asked of them, likewise, NaN where nothing; what was asked once is not undone
+    asked : targets of earlier edits, (frames, 16), NaN for none, which a drag does not undo
     """
 
     def __init__(
@@ -81,10 +80,10 @@ class Dragger:
         self._solver = Solver(take, self.controls, regressor or infer.bundled())
 
     def drag(self, start: int, asked: Array, *, believability: float = DEFAULT_BELIEVABILITY) -> Patch:
-        """Return the patch for asked curves over frames from `start`, (n, 16), or (n, 8) without the extended ones.
+        """Return the patch for target curves over frames from `start`, (n, 16), or (n, 8) without the extended ones.
 
-        `believability` is 0 where the face shall go wherever the curves are pulled, 1 where it shall do nothing that
-        neither this take nor the recordings did. What is asked as it is, or is NaN, is not asked. Raises `EditError`
+        `believability` is the plausibility limit: 0 for none, 1 to stay within what this take or the recordings did. NaN,
+        or the take's own value, is no target. Raises `EditError`
         for frames that the take does not have.
         """
         stop = start + len(asked)
@@ -94,19 +93,19 @@ class Dragger:
             )
         if not (np.abs(np.nan_to_num(asked, posinf=np.inf)) < FARTHEST_MM**2).all():
             raise EditError("The asked curves must be finite, and within what a face could be asked.")
-        wish = np.full((len(asked), len(ALL_CONTROLS)), np.nan)
-        wish[:, : asked.shape[1]] = asked
-        stretches = self._solver.stretches(start, wish)
+        targets = np.full((len(asked), len(ALL_CONTROLS)), np.nan)
+        targets[:, : asked.shape[1]] = asked
+        stretches = self._solver.stretches(start, targets)
         first = min([start, *(each.start for each in stretches)])
         last = max([stop, *(each.stop for each in stretches)])
         weights, reached = self.take.weights[first:last].copy(), self.controls[first:last].copy()
-        wanted, granted = np.full_like(reached, np.nan), np.full_like(reached, np.nan)
+        target, granted = np.full_like(reached, np.nan), np.full_like(reached, np.nan)
         for each in stretches:
             rows = slice(each.start - first, each.stop - first)
             weights[rows], granted[rows] = self._solver.solve(each, believability=believability, held=self._held(each))
             reached[rows] = bundled_face().measure(weights[rows])
-            wanted[rows] = each.asked
-        return Patch(first, weights, wanted, reached, granted)
+            target[rows] = each.asked
+        return Patch(first, weights, target, reached, granted)
 
     def _held(self, stretch: Stretch) -> Mask | None:
         return None if self._asked is None else ~np.isnan(self._asked[stretch.start : stretch.stop])

@@ -1,4 +1,4 @@
-"""One take edited again and again while a pointer moves: what costs time to prepare is kept from request to request."""
+"""Edits a take repeatedly while a pointer moves: expensive preparations are cached between requests."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 
 
 class Editor:
-    """Answers requests to one take; an answer depends on the take and on the request alone, whatever came before.
+    """Returns patches for requests to a take; a patch depends on the take and the request alone.
 
     Parameters
     ----------
     take : what is edited
     controls : its curves, (frames, 16), where they have been measured already
-    asked : what edits below have asked of them, likewise, NaN where nothing; drags do not undo it
+    asked : targets of earlier edits, (frames, 16), NaN for none, which drags do not undo
     """
 
     def __init__(self, take: Take, controls: Array | None = None, *, asked: Array | None = None) -> None:
@@ -48,7 +48,7 @@ class Editor:
         self._cleaned: Cleaned | None = None  # at full strength
 
     def patch(self, request: Request) -> Patch:
-        """Return what a request comes to; raises `EditError` where it does not fit the take."""
+        """Return the patch of a request; raises `EditError` where it does not fit the take."""
         return _PATCHES[type(request)](self, request)
 
     @cached_property
@@ -58,7 +58,7 @@ class Editor:
 
     @cached_property
     def dragger(self) -> Dragger:
-        """What drags are carried out with; the networks are loaded for the first."""
+        """The solver of drags; the first use loads the networks."""
         return Dragger(self.take, self._controls, asked=self._asked)
 
     def _drag(self, request: DragRequest) -> Patch:
@@ -87,7 +87,7 @@ class Editor:
         return retouch.smooth(self.take, request.frames, request.cutoff_hz, feather_s=request.feather_s)
 
     def cleaned(self, frames: tuple[int, int]) -> Cleaned:
-        """Return frames cleaned at full strength, and what that took off."""
+        """Return frames cleaned at full strength, and what was removed."""
         from engine.clean.takes import clean
 
         if self._cleaned is None or self._cleaned.touched != frames:
@@ -114,7 +114,7 @@ class Editor:
         return Patch.between(self.take, self._pins[1].take(request.pins), request.frames)
 
     def variants(self, request: FillRequest, count: int) -> list[Patch]:
-        """Return fills from the request's seed on, each of the next seed; of a smooth curve there is but one."""
+        """Return a fill for each seed from the request's seed on; a smooth curve has a single variant."""
         from engine.inpaint.fill import refill
 
         fills = refill(self.take, request, seeds=range(request.seed, request.seed + count))

@@ -1,4 +1,4 @@
-"""Performances on other heads: by the movement of markers, by labelled frames, and meshes led by a few points."""
+"""Retargets performances to other heads: by marker movement, by labelled frames, and meshes by feature points."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from engine.formats.markers.capture import Markers
     from engine.spacetime.source import Source
 
-Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may raise, to stop
-FEWEST_SHARED = 4  # points that have a marker, below which no mesh can be led
+Progress = Callable[[float], None]  # is called with the share that is done, 0..1; it may raise, to stop
+FEWEST_SHARED = 4  # points that have a marker, below which no mesh can be driven
 
 
-def nobody(_: float) -> None:
-    """Tell nobody."""
+def ignore(_: float) -> None:
+    """Ignore the progress."""
 
 
 @dataclass(frozen=True, eq=False)
 class Performance:
-    """What is retargeted: a take on its head, or a capture's markers.
+    """The source of a retarget: a take on its head, or a capture's markers.
 
     Attributes
     ----------
@@ -46,14 +46,14 @@ class Performance:
 
     @cached_property
     def source(self) -> Source:
-        """The performance as marker motion; worked out when it is first needed."""
+        """The performance as marker motion, computed on first use."""
         from engine.spacetime.source import from_take
 
         return self.capture if self.capture is not None else from_take(self.take, self.head)
 
     @property
     def features(self) -> Array:
-        """What tells its frames apart, (frames, D): a take's weights, or where a capture's markers are."""
+        """The features of its frames, (frames, D): a take's weights, or a capture's marker positions."""
         from engine.spacetime.source import bridge
 
         if self.capture is None:
@@ -82,7 +82,7 @@ class RetargetRequest:
     landmarks: Mapping[str, str] | None = None
 
     def stored(self) -> dict[str, Any]:
-        """Return what JSON can hold of it; the head, a file of its own, is not in it."""
+        """Return the request as JSON values, without the head, which is a file of its own."""
         matching = {name: getattr(self.matching, name) for name in ("alpha", "beta", "closure")}
         return {"places": dict(self.places), **matching}
 
@@ -107,13 +107,13 @@ class LabelRequest:
         return None
 
     def stored(self) -> dict[str, Any]:
-        """Return what JSON can hold of it."""
+        """Return the request as JSON values."""
         return {"labels": {str(frame): dict(pose) for frame, pose in self.labels.items()}, **self.movement.stored()}
 
 
 @dataclass(frozen=True, eq=False)
 class Retargeted:
-    """What came of it.
+    """The result of a retarget.
 
     Attributes
     ----------
@@ -136,32 +136,32 @@ class Retargeted:
         return Patch.between(take, take.with_weights(self.take.weights), (0, len(take)))
 
 
-def retarget(performance: Performance, request: RetargetRequest, tell: Tell = nobody) -> Retargeted:
+def retarget(performance: Performance, request: RetargetRequest, progress: Progress = ignore) -> Retargeted:
     """Return the target's weights that move its markers as the performance's move; raises `EditError`."""
     start, stop = request.frames or (0, len(performance.take))
     source = performance.source if request.frames is None else performance.source.part(start, stop)
-    return Retargeted(_matched(source, request, tell), start)
+    return Retargeted(_matched(source, request, progress), start)
 
 
-def retarget_from_labels(performance: Performance, request: LabelRequest, tell: Tell = nobody) -> Retargeted:
+def retarget_from_labels(performance: Performance, request: LabelRequest, progress: Progress = ignore) -> Retargeted:
     """Return the target's weights between the labels; a capture's markers are matched first. Raises `EditError`."""
     from engine.manifold.retarget import from_labels
 
     base, features = performance.take, None
     if performance.capture is not None:
-        base = _matched(performance.capture, request.movement, lambda share: tell(share / 2))
+        base = _matched(performance.capture, request.movement, lambda share: progress(share / 2))
         features = performance.features
-    made = from_labels(base, request.labels, source=features, tell=tell)
-    return Retargeted(without_lacking(made.take, request.movement.head), 0, made.uncertainty)
+    retargeted = from_labels(base, request.labels, source=features, progress=progress)
+    return Retargeted(without_lacking(retargeted.take, request.movement.head), 0, retargeted.uncertainty)
 
 
-def _matched(source: Source, request: RetargetRequest, tell: Tell) -> Take:
+def _matched(source: Source, request: RetargetRequest, progress: Progress) -> Take:
     from engine.spacetime.retarget import retarget as by_movement
     from engine.spacetime.source import with_gaps
 
     measured = source if request.landmarks is None else with_gaps(source, request.landmarks)
     layout = named(request.places) if request.places else None
-    return by_movement(measured, request.head, layout=layout, matching=request.matching, tell=tell)
+    return by_movement(measured, request.head, layout=layout, matching=request.matching, progress=progress)
 
 
 def suggest_frames(performance: Performance, count: int, labelled: Sequence[int] = ()) -> list[int]:
@@ -174,7 +174,7 @@ def suggest_frames(performance: Performance, count: int, labelled: Sequence[int]
 def capture_of(
     markers: Markers, *, neutral_frame: int = 0, turn: Array | None = None, landmarks: Mapping[str, str] | None = None
 ) -> Source:
-    """Return a capture as marker motion with the head held still, from a frame in which the face is at rest.
+    """Return a capture as marker motion without head motion, from a frame in which the face is at rest.
 
     `turn` and `landmarks` are how its markers were understood (`engine.formats.characters.marker_places`). Raises
     `EditError` where that frame is not there or lacks markers, and where markers coincide or lie in one plane.
@@ -192,7 +192,7 @@ def standard_places(head: Character) -> dict[str, int]:
 
 @dataclass(frozen=True, eq=False)
 class DriveRequest:
-    """A mesh, with shapes or without, led by points on it (ZLL17 section 3.3).
+    """A mesh, with shapes or without, that follows feature points (ZLL17 section 3.3).
 
     Attributes
     ----------

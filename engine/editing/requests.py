@@ -1,7 +1,7 @@
-"""What may be asked of a take: one small frozen type for each verb, complete enough to be stored and carried out again.
+"""The requests of the verbs: a small frozen type for each, complete enough to be stored and repeated.
 
-`stored` of a request is what JSON can hold; `restored` makes the same request of it, to the bit. Nothing here loads a
-network or a solver, so that a window can ask before they are there.
+`stored` returns a request as JSON values, and `restored` builds the same request from them, bit for bit. Nothing here
+loads a network or a solver, so that a window can build requests before they are loaded.
 """
 
 from __future__ import annotations
@@ -29,32 +29,32 @@ GONE = EditError("This edit does not say what it was made from.", "Make it anew.
 
 
 class Request(Protocol):
-    """What all requests have: those of `heads` too.
+    """The interface of all requests, those of `heads` too.
 
     Attributes
     ----------
-    verb : what is to be done, as a project file names it
+    verb : its name in a project file
     """
 
     verb: ClassVar[str]
 
     @property
     def frames(self) -> Frames | None:
-        """The frames that it is about; None for all."""
+        """The frames that it changes; None for all."""
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it."""
+        """Return the request as JSON values."""
 
 
 @dataclass(frozen=True, eq=False)
 class DragRequest:
-    """Curves asked of the controls; the face follows (BSBS19 section 4).
+    """Target curves of the controls, which the face follows (BSBS19 section 4).
 
     Attributes
     ----------
     start : first frame
-    asked : (n, 16), or (n, 8) without the extended controls; NaN, and what is as it is, asks for nothing
-    believability : 0 goes wherever the curves are pulled, 1 does only what this take or the recordings did
+    asked : (n, 16) targets, or (n, 8) without the extended controls; NaN, and the take's own value, is no target
+    believability : plausibility limit: 0 for none, 1 to stay within what this take or the recordings did
     """
 
     verb: ClassVar[str] = "drag"
@@ -64,11 +64,11 @@ class DragRequest:
 
     @property
     def frames(self) -> Frames:
-        """The frames that curves are asked for."""
+        """The frames of the target curves."""
         return self.start, self.start + len(self.asked)
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it: the curves of those controls that something is asked of."""
+        """Return the request as JSON values, with the curves of those controls that have targets."""
         columns = np.flatnonzero(~np.isnan(self.asked).all(axis=0))
         curves = {ALL_CONTROLS[column].name: packed(self.asked[:, column]) for column in columns}
         known = {"start": self.start, "length": len(self.asked), "curves": curves}
@@ -88,7 +88,7 @@ class DragRequest:
 
 @dataclass(frozen=True)
 class ControlRequest:
-    """One control changed over a range of frames.
+    """A change of one control over a range of frames.
 
     Attributes
     ----------
@@ -106,7 +106,7 @@ class ControlRequest:
     believability: float = DEFAULT_BELIEVABILITY
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it."""
+        """Return the request as JSON values."""
         return {
             "control": self.control,
             "frames": list(self.frames),
@@ -126,7 +126,7 @@ class ControlRequest:
 
 @dataclass(frozen=True, eq=False)
 class WeightRequest:
-    """A curve in place of one weight; no network has a say.
+    """A curve that replaces one weight; no network is involved.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class WeightRequest:
         return self.start, self.start + len(self.curve)
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it."""
+        """Return the request as JSON values."""
         return {"shape": self.shape, "start": self.start, "curve": packed(self.curve)}
 
     @classmethod
@@ -170,7 +170,7 @@ class PasteRequest:
         return self.start, self.start + len(self.weights)
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it."""
+        """Return the request as JSON values."""
         return {"start": self.start, "weights": packed(self.weights), "feather_s": self.feather_s}
 
     @classmethod
@@ -189,7 +189,7 @@ class SmoothRequest:
     feather_s: float = SMOOTH_FEATHER_S
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it."""
+        """Return the request as JSON values."""
         return {"frames": list(self.frames), "cutoff_hz": self.cutoff_hz, "feather_s": self.feather_s}
 
     @classmethod
@@ -207,7 +207,7 @@ class CleanRequest:
     strength: float = 1.0
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it."""
+        """Return the request as JSON values."""
         return {"frames": list(self.frames), "strength": self.strength}
 
     @classmethod
@@ -235,7 +235,7 @@ class PinRequest:
     closure: float | None = None
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it."""
+        """Return the request as JSON values."""
         poses = {str(frame): _named(pose) for frame, pose in self.pins.items()}
         return {"pins": poses, "range": list(self.frames), "whole": self.whole, "closure": self.closure}
 
@@ -270,7 +270,7 @@ class SpansRequest:
         return min(start for start, _ in self.spans), max(stop for _, stop in self.spans)
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it; a guide by its frames around all spans."""
+        """Return the request as JSON values; a guide by its frames around all spans."""
         return {**replace(self.steering, frames=self.frames).stored(), "spans": [list(span) for span in self.spans]}
 
     @classmethod
@@ -287,7 +287,7 @@ VERBS: tuple[str, ...] = (*_BY_VERB, FillRequest.verb)
 
 
 def restored(verb: str, inputs: Mapping[str, Any]) -> Request:
-    """Return the request of a verb that was stored so; raises `EditError` for anything else."""
+    """Return the request of a verb from its stored form; raises `EditError` for anything else."""
     try:
         if verb == FillRequest.verb:
             return SpansRequest.restored(inputs) if "spans" in inputs else FillRequest.restored(inputs)
@@ -297,13 +297,13 @@ def restored(verb: str, inputs: Mapping[str, Any]) -> Request:
 
 
 def packed(array: Array) -> dict[str, Any]:
-    """Return numbers of any shape as JSON can hold them, NaN too."""
+    """Return an array as JSON values, NaN too."""
     rows = np.ascontiguousarray(array, "<f8")
     return {"shape": list(rows.shape), "f8": base64.b64encode(rows.tobytes()).decode("ascii")}
 
 
 def unpacked(stored: Mapping[str, Any]) -> Array:
-    """Return the numbers that `packed` stored; raises `ValueError` or `TypeError` for anything else."""
+    """Return the array that `packed` stored; raises `ValueError` or `TypeError` for anything else."""
     numbers = np.frombuffer(base64.b64decode(stored["f8"], validate=True), "<f8")
     return numbers.reshape([int(size) for size in stored["shape"]]).astype(np.float64)
 
@@ -314,6 +314,6 @@ def _frames(stored: Any) -> Frames:
 
 
 def _named(pose: Pose) -> dict[str, float]:
-    """Return a pose's weights by shape, without what is free."""
+    """Return a pose's weights by shape, without the free ones."""
     weights = filled(pose)
     return {name: float(weights[SHAPE_INDEX[name]]) for name in SHAPES if np.isfinite(weights[SHAPE_INDEX[name]])}

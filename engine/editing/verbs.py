@@ -1,4 +1,4 @@
-"""One function for each verb of the user: a take and what is asked of it in, the patch that does it out."""
+"""The verbs of the user: each takes a take and a request, and returns a patch."""
 
 from __future__ import annotations
 
@@ -26,61 +26,61 @@ if TYPE_CHECKING:
     from engine.pose import Pose
 
 
-def drag(take: Take, asked: DragRequest, *, held: Array | None = None) -> Patch:
-    """Bend the face by curves of its controls; `held`, (frames, 16), is what edits below asked, NaN where nothing."""
-    return Editor(take, asked=held).patch(asked)
+def drag(take: Take, request: DragRequest, *, held: Array | None = None) -> Patch:
+    """Move the face to target curves of its controls; `held`, (frames, 16), are the targets of earlier edits, NaN for none."""
+    return Editor(take, asked=held).patch(request)
 
 
-def set_control(take: Take, asked: ControlRequest) -> Patch:
+def set_control(take: Take, request: ControlRequest) -> Patch:
     """Change one control over a range of frames; the whole face follows."""
-    return Editor(take).patch(asked)
+    return Editor(take).patch(request)
 
 
-def replace_weight(take: Take, asked: WeightRequest) -> Patch:
+def replace_weight(take: Take, request: WeightRequest) -> Patch:
     """Put a curve in place of one weight."""
-    return Editor(take).patch(asked)
+    return Editor(take).patch(request)
 
 
-def paste(take: Take, asked: PasteRequest) -> Patch:
+def paste(take: Take, request: PasteRequest) -> Patch:
     """Put copied weights in place; the frames beside them ease over."""
-    return Editor(take).patch(asked)
+    return Editor(take).patch(request)
 
 
-def smooth(take: Take, asked: SmoothRequest) -> Patch:
+def smooth(take: Take, request: SmoothRequest) -> Patch:
     """Low-pass all weights over a range of frames, shifting nothing in time."""
-    return Editor(take).patch(asked)
+    return Editor(take).patch(request)
 
 
-def fill(take: Take, asked: FillRequest) -> Patch:
+def fill(take: Take, request: FillRequest) -> Patch:
     """Fill a span with motion (BSS20)."""
-    return Editor(take).patch(asked)
+    return Editor(take).patch(request)
 
 
-def fill_variants(take: Take, asked: FillRequest, count: int) -> list[Patch]:
-    """Fill a span in several ways, from the request's seed on; a smooth curve there is but one."""
-    return Editor(take).variants(asked, count)
+def fill_variants(take: Take, request: FillRequest, count: int) -> list[Patch]:
+    """Fill a span once per seed from the request's seed on; a smooth curve has a single variant."""
+    return Editor(take).variants(request, count)
 
 
-def fill_spans(take: Take, asked: SpansRequest) -> Patch:
+def fill_spans(take: Take, request: SpansRequest) -> Patch:
     """Fill several spans one after the other."""
-    return Editor(take).patch(asked)
+    return Editor(take).patch(request)
 
 
-def clean(take: Take, asked: CleanRequest) -> Patch:
-    """Remove the tracker's noise from a range of frames: the take, mixed with itself cleaned fully (BSS20b)."""
-    return Editor(take).patch(asked)
+def clean(take: Take, request: CleanRequest) -> Patch:
+    """Remove the tracker's noise from a range of frames by blending the take with the network's estimate (BSS20b)."""
+    return Editor(take).patch(request)
 
 
-def cleaned(take: Take, asked: CleanRequest) -> Cleaned:
-    """Return what `clean` comes to but for rounding, with what was taken off and by how much it trails."""
+def cleaned(take: Take, request: CleanRequest) -> Cleaned:
+    """Return the result of `clean`, but for rounding, with what was removed and the lag."""
     from engine.clean.takes import clean as by_network
 
-    return by_network(take, strength=asked.strength, frames=asked.frames)
+    return by_network(take, strength=request.strength, frames=request.frames)
 
 
-def pin(take: Take, asked: PinRequest) -> Patch:
-    """Require poses exactly at frames, and spread the change over a range."""
-    return Editor(take).patch(asked)
+def pin(take: Take, request: PinRequest) -> Patch:
+    """Pin poses exactly at frames and spread the change over a range (SLS12 section 6)."""
+    return Editor(take).patch(request)
 
 
 def pose_reaching(take: Take, frame: int, controls: Mapping[str, float]) -> Array:

@@ -61,8 +61,8 @@ def read(path: Path) -> LabelFile:
 def write(file: LabelFile, path: Path) -> None:
     """Write labelled frames as JSON; an existing file is replaced whole or left as it was."""
     rows = [{"frame": frame, "weights": dict(weights)} for frame, weights in sorted(file.labels.items())]
-    held: dict[str, Any] = {} if file.target is None else {"target": file.target.as_posix()}
-    write_bytes(path, [json.dumps({**held, "labels": rows}, indent=1).encode()])
+    stored: dict[str, Any] = {} if file.target is None else {"target": file.target.as_posix()}
+    write_bytes(path, [json.dumps({**stored, "labels": rows}, indent=1).encode()])
 
 
 def _weight(shape: str, value: Any, frame: int, path: Path) -> float:
@@ -78,8 +78,8 @@ def _weight(shape: str, value: Any, frame: int, path: Path) -> float:
 
 def _json(text: str, path: Path) -> tuple[str | None, Iterable[tuple[Any, Any]]]:
     try:
-        held = json.loads(text)
-        target, rows = held.get("target"), [(row["frame"], row["weights"]) for row in held["labels"]]
+        stored = json.loads(text)
+        target, rows = stored.get("target"), [(row["frame"], row["weights"]) for row in stored["labels"]]
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError, MemoryError):
         raise FormatError(f"{path.name} is not a list of labelled frames.", EXPECTED) from None
     if target is not None and (not isinstance(target, str) or not target or "\0" in target):

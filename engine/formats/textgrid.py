@@ -60,8 +60,8 @@ def _tokens(text: str) -> Iterator[str]:
     """Yield texts in quotes, flags and numbers as they stand free, in the order of the file."""
     for match in _TOKEN.finditer(text):
         if match["text"] is not None:
-            held = " ".join(match["text"].replace('""', _QUOTE).split())
-            yield f'"{held}"'
+            label = " ".join(match["text"].replace('""', _QUOTE).split())
+            yield f'"{label}"'
         elif (word := match["word"]) and (word.startswith("<") or _NUMBER.fullmatch(word)):
             yield word.replace(",", ".")
 

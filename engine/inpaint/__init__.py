@@ -1,1 +1,1 @@
-"""Filling a marked span with believable motion, steered by as much or as little as is known (BSS20)."""
+"""Motion in-filling: generation of a span's motion from its context and any guidance there is (BSS20)."""

@@ -1,6 +1,8 @@
-"""Lips that meet where M, B or P is said: a fill that misses a bilabial looks wrong first."""
+"""Lip closure at bilabials: a fill whose lips stay open at M, B or P looks wrong first."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,29 +15,38 @@ from engine.inpaint.seams import distance_frames
 from engine.speech.visemes import NAMES
 from engine.take import Array
 
-SHUT_MM = 1.0
-EASE_FRAMES = 4.0  # over which the lips come together and part again
+
+@dataclass(frozen=True)
+class Tuning:
+    """When lips count as closed, and how fast they close; not tuned."""
+
+    shut_mm: float = 1.0  # mm between the lips at a bilabial
+    ease_frames: float = 4.0  # frames over which the lips come together and part again
+
+
+TUNING = Tuning()
 _LIPS = np.array([CONTROL_INDEX["lips_vertical"]])
 _MBP = NAMES.index("mbp")
 
 
-def shut_lips(made: Array, gap: Gap) -> Array:
-    """Return made motion, (frames, 52), with the lips brought together where the visemes say so, moving least.
+def close_lips(motion: Array, gap: Gap) -> Array:
+    """Project generated motion, (frames, 52), onto lips no wider than `shut_mm` at frames with a bilabial viseme.
 
-    Known values stay as they are; where a curve is asked for the lips, it has the last word.
+    The least change of the weights of the lower face (`engine.exact`); known values stay as they are, and where the lips
+    have a control target, the target decides.
     """
-    said = (gap.visemes[:, _MBP] > 0) & np.isnan(gap.controls[:, _LIPS[0]])
+    bilabial = (gap.visemes[:, _MBP] > 0) & np.isnan(gap.controls[:, _LIPS[0]])
     free = np.isnan(gap.known)
-    if not (said & free.any(axis=1)).any():
-        return made
-    away = distance_frames(np.where(said, 0.0, np.nan)[:, None])[:, 0]
-    nearness = np.clip(1 - away / EASE_FRAMES, 0.0, 1.0)
-    lips = bundled_measurer().measure(made)[:, _LIPS]
-    asked = lips - ease(nearness)[:, None] * np.maximum(0.0, lips - SHUT_MM)
-    rows = (asked < lips)[:, 0]
+    if not (bilabial & free.any(axis=1)).any():
+        return motion
+    away = distance_frames(np.where(bilabial, 0.0, np.nan)[:, None])[:, 0]
+    nearness = np.clip(1 - away / TUNING.ease_frames, 0.0, 1.0)
+    lips = bundled_measurer().measure(motion)[:, _LIPS]
+    target = lips - ease(nearness)[:, None] * np.maximum(0.0, lips - TUNING.shut_mm)
+    rows = (target < lips)[:, 0]
     if not rows.any():
-        return made
-    moved = made.copy()
+        return motion
+    moved = motion.copy()
     lower = REGIONS["lower"] & free.any(axis=0)
-    moved[rows] = exact.project(made[rows], asked[rows], _LIPS, bundled_measurer(), free=lower)
-    return np.where(free, moved, made)
+    moved[rows] = exact.project(motion[rows], target[rows], _LIPS, bundled_measurer(), free=lower)
+    return np.where(free, moved, motion)

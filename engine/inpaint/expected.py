@@ -1,7 +1,8 @@
-"""The face to expect where some controls run as they run: what lies under a fill that control curves steer."""
+"""The pose expected of control curves, E[weights | controls]: the base motion of a fill with control targets."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -15,18 +16,26 @@ from engine.models.threads import one_thread
 from engine.models.unet import ALIGNMENT, BatchNormUNet
 from engine.take import SHAPES, Array
 
-MEMBERS = 3  # one errs three per cent more on validation takes
+
+@dataclass(frozen=True)
+class Tuning:
+    """Size of the ensemble; part of the trained model."""
+
+    members: int = 3  # networks whose mean is taken [1, 3]; a single network errs 3 % more on validation takes
+
+
+TUNING = Tuning()
 
 
 class Expected(nn.Module):
-    """The mean of several U-Nets, each of which knows any of the controls: curves, and which are given, to weights."""
+    """Predicts weights from curves of any of the controls, as the mean of several U-Nets."""
 
     rest: Tensor
     spread: Tensor
     mean: Tensor
     scale: Tensor
 
-    def __init__(self, members: int = MEMBERS) -> None:
+    def __init__(self, members: int = TUNING.members) -> None:
         super().__init__()
         self.members = nn.ModuleList(BatchNormUNet(2 * len(CONTROLS), len(SHAPES)) for _ in range(members))
         for name, size, value in (("rest", len(CONTROLS), 0.0), ("mean", len(SHAPES), 0.0)):
@@ -35,19 +44,19 @@ class Expected(nn.Module):
             self.register_buffer(name, torch.ones(size))
 
     def forward(self, controls: Tensor) -> Tensor:
-        """Return weights, (batch, frames, 52), of controls, (batch, frames, 8) in mm, NaN where nothing is said."""
+        """Return weights, (batch, frames, 52), of controls, (batch, frames, 8) in mm, NaN where there is no target."""
         given = torch.isfinite(controls)
         seen = torch.where(given, (controls - self.rest) / self.spread, 0.0)
         seen = torch.cat([seen, given.to(seen.dtype)], dim=-1).transpose(1, 2)  # (batch, 16, frames)
-        made: Tensor = torch.stack([member(seen) for member in self.members]).mean(dim=0).transpose(1, 2)
-        return made * self.scale + self.mean
+        weights: Tensor = torch.stack([member(seen) for member in self.members]).mean(dim=0).transpose(1, 2)
+        return weights * self.scale + self.mean
 
-    def face(self, controls: Array) -> Array:
-        """Return weights, (frames, 52) in 0..1, of control curves, (frames, 8) in mm, NaN where nothing is said."""
-        held = np.pad(controls, ((0, -len(controls) % ALIGNMENT), (0, 0)), mode="edge")
+    def pose(self, controls: Array) -> Array:
+        """Return weights, (frames, 52) in 0..1, of control curves, (frames, 8) in mm, NaN where there is no target."""
+        padded = np.pad(controls, ((0, -len(controls) % ALIGNMENT), (0, 0)), mode="edge")
         with torch.inference_mode(), one_thread():
-            made = self(torch.tensor(held[None], dtype=torch.float32))[0, : len(controls)].numpy()
-        return np.asarray(np.clip(made.astype(np.float64), 0.0, 1.0))
+            weights = self(torch.tensor(padded[None], dtype=torch.float32))[0, : len(controls)].numpy()
+        return np.asarray(np.clip(weights.astype(np.float64), 0.0, 1.0))
 
 
 def load(path: Path = MODELS / "expected.safetensors") -> Expected:

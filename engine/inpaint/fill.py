@@ -1,4 +1,4 @@
-"""Filling a span of a take: any frame rate, any region, steered by pins, a guide, visemes and controls, or by nothing."""
+"""Fills a span of a take at any frame rate, in any region, with or without pins, a guide, visemes and controls."""
 
 from __future__ import annotations
 
@@ -11,26 +11,37 @@ from scipy.interpolate import make_interp_spline
 
 from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer
 from engine.errors import EditError
+from engine.inpaint import seams
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler, bundled
 from engine.inpaint.regions import region_shapes
 from engine.inpaint.request import FillRequest, Style, checked
-from engine.inpaint.seams import REACH_FRAMES, bridged, land
+from engine.inpaint.seams import bridge_weights, constrain
 from engine.models.resample import interpolate
 from engine.pose import Pose
 from engine.speech.visemes import Cue, classes_over, one_hot
 from engine.take import MODEL_FPS, Array, Mask, Take, runs
 
-BRIDGE_S = 0.25  # up to here a smooth curve through the seams is closer to what was there than a performance
-_CONTEXT = 60  # model frames on either side that the network looks at
-_LENDING = 5400  # model frames on either side that may lend motion to a long span
-_SEAM = 2  # known frames on either side that fix value and slope
-_CLOSED_MM, _HOLD = 1.5, 0.25  # where lips or lids meet in the fill, landing on the seams must not part them
+
+@dataclass(frozen=True)
+class Tuning:
+    """Settings of a fill; ranges tried were not recorded."""
+
+    bridge_s: float = 0.25  # seconds; spans up to here are nearer to the truth when interpolated than when generated
+    context_frames: int = 60  # model frames on either side that the network is given
+    retrieval_frames: int = 5400  # model frames on either side that motion may be retrieved from
+    seam_frames: int = 2  # known frames on either side; two fix value and slope
+    # Lips or lids nearer than `closed_mm` are kept together by a pull of `hold` against the correction onto the seams.
+    closed_mm: float = 1.5  # mm
+    hold: float = 0.25  # strength beside squared accelerations
+
+
+TUNING = Tuning()
 
 
 @dataclass(frozen=True, eq=False)
 class Fill:
-    """A filled take and what it was made from.
+    """A filled take and its inputs.
 
     Attributes
     ----------
@@ -38,7 +49,7 @@ class Fill:
     span : half-open range of frames that was filled
     seed : which of the many possible motions this is
     style : "bridge" for a smooth curve, "perform" for the network's motion
-    inputs : what steered it; `refill` runs it again, with more pins or another seed
+    inputs : the request; `refill` runs it again, with more pins or another seed
     """
 
     take: Take
@@ -63,16 +74,16 @@ def fill(
     variants: int = 1,
     filler: Filler | None = None,
 ) -> list[Fill]:
-    """Fill a span of a take with motion (BSS20), one variant per seed from `seed` on.
+    """Fill a span of a take with motion (BSS20), with one variant per seed from `seed` on.
 
     Parameters
     ----------
     frames : half-open range to fill
     region : which shapes: face, lower, upper, eyes, left or right
-    pins : poses to go through exactly, by frame: (52,) weights, or some weights by shape
+    pins : poses met exactly, by frame: (52,) weights, or some weights by shape
     guide : another take, of the same rate, to follow roughly; its frame is the take's plus `guide_offset`
-    visemes : what is said when, in seconds of the take
-    controls : asked control curves in mm by name, one value per frame of the span or one for all; NaN asks for nothing
+    visemes : visemes or phones with their times in seconds of the take
+    controls : target curves in mm by control, one value per frame of the span or a single value; NaN for no target
     style : "bridge" for a smooth curve, "perform" for the network's motion; "auto" bridges short unguided spans
 
     Raises `EditError`, with nothing changed, for a span, pins or guidance that do not fit the take.
@@ -90,7 +101,7 @@ def refill(
     seeds: Sequence[int] | None = None,
     filler: Filler | None = None,
 ) -> list[Fill]:
-    """Fill a span as `request` says, once per seed, its own without any; raises `EditError` as `fill` does."""
+    """Fill a span by a request, once per seed or with the request's own; raises `EditError` as `fill` does."""
     seeds = (request.seed,) if seeds is None else seeds
     if not len(seeds):
         raise EditError("At least one variant must be asked for.")
@@ -99,20 +110,20 @@ def refill(
     window = _Window.of(take, request.frames)
     gap = _gap(take, request, window)
     if style == "bridge":
-        made = np.repeat(bridged(gap.known)[None], len(seeds), axis=0)
+        motions = np.repeat(bridge_weights(gap.known)[None], len(seeds), axis=0)
     else:
-        gap = gap if gap.guided.any() else replace(gap, rest=_rest(take, [request.frames, *request.besides]))
-        made = (filler or bundled()).fill(gap, seeds=seeds)
+        gap = gap if gap.guided.any() else replace(gap, rest=_rest_of(take, [request.frames, *request.besides]))
+        motions = (filler or bundled()).fill(gap, seeds=seeds)
     return [
-        Fill(_placed(take, request, motion, window), request.frames, seed, style, replace(request, seed=seed))
-        for seed, motion in zip(seeds, made, strict=True)
+        Fill(_insert(take, request, motion, window), request.frames, seed, style, replace(request, seed=seed))
+        for seed, motion in zip(seeds, motions, strict=True)
     ]
 
 
 def fill_spans(take: Take, spans: Sequence[tuple[int, int]], request: FillRequest, *, seed: int = 0) -> Take:
     """Fill several spans one after the other, each with the pins and controls that lie in it.
 
-    Raises `EditError` for spans that overlap or share no pin with one that is asked for.
+    Raises `EditError` for spans that overlap and for a pin outside all of them.
     """
     ordered = sorted(spans)
     for (_, stop), (start, _) in pairwise(ordered):
@@ -131,12 +142,12 @@ def fill_spans(take: Take, spans: Sequence[tuple[int, int]], request: FillReques
 
 
 def lost_spans(take: Take) -> list[tuple[int, int]]:
-    """Return the lost runs of a take as spans ready to fill."""
+    """Return the lost runs of a take as spans, half-open ranges of frames."""
     return runs(take.lost)
 
 
 def fill_lost(take: Take, *, seed: int = 0, request: FillRequest | None = None) -> Take:
-    """Fill every lost run; short ones are bridged and long ones performed unless `request` says otherwise."""
+    """Fill every lost run; short ones are interpolated and long ones generated unless `request` has another style."""
     request = request or FillRequest((0, 0))
     return fill_spans(take, lost_spans(take), replace(request, lost=True), seed=seed)
 
@@ -145,7 +156,7 @@ def _style(request: FillRequest, take: Take) -> Style:
     if request.style != "auto":
         return request.style
     guided = request.guide is not None or request.visemes or request.controls
-    short = (request.frames[1] - request.frames[0]) / take.fps <= BRIDGE_S
+    short = (request.frames[1] - request.frames[0]) / take.fps <= TUNING.bridge_s
     return "bridge" if short and not guided else "perform"
 
 
@@ -160,8 +171,8 @@ class _Window:
     @classmethod
     def of(cls, take: Take, span: tuple[int, int]) -> _Window:
         pace = take.fps / MODEL_FPS
-        first = max(0, int(np.floor(span[0] / pace)) - _CONTEXT)
-        last = min(int(np.ceil((len(take) - 1) / pace)), int(np.ceil(span[1] / pace)) + _CONTEXT)
+        first = max(0, int(np.floor(span[0] / pace)) - TUNING.context_frames)
+        last = min(int(np.ceil((len(take) - 1) / pace)), int(np.ceil(span[1] / pace)) + TUNING.context_frames)
         return cls(first, max(2, last - first + 1), pace)
 
     @property
@@ -175,6 +186,7 @@ class _Window:
 
 
 def _gap(take: Take, request: FillRequest, window: _Window) -> Gap:
+    """Return the span with its context and guidance, resampled to the model frames of a window."""
     (start, stop), shapes = request.frames, region_shapes(request.region)
     known = interpolate(take.weights, window.at)
     inside = (window.at > start - 1) & (window.at < stop)
@@ -195,7 +207,7 @@ def _gap(take: Take, request: FillRequest, window: _Window) -> Gap:
 
 
 def _unknown(take: Take, request: FillRequest) -> Mask:
-    """Return which frames, (frames,), nobody knows anything of: lost ones, and further spans that are not filled yet."""
+    """Return which frames, (frames,), are no context: lost ones, and further spans that are not filled yet."""
     unknown: Mask = take.lost.copy()
     for start, stop in request.unmade:
         unknown[start:stop] = True
@@ -203,13 +215,13 @@ def _unknown(take: Take, request: FillRequest) -> Mask:
     return unknown
 
 
-def _rest(take: Take, spans: Sequence[tuple[int, int]]) -> list[Array]:
-    """Return what is known of a take around the first of the spans and outside all of them, at the model rate."""
+def _rest_of(take: Take, spans: Sequence[tuple[int, int]]) -> list[Array]:
+    """Return the known stretches around the first of the spans and outside all of them, resampled to the model rate."""
     pace = take.fps / MODEL_FPS
     known: Mask = ~take.lost
     for start, stop in spans:
         known[start:stop] = False
-    reach = round(_LENDING * pace)
+    reach = round(TUNING.retrieval_frames * pace)
     known[: max(0, spans[0][0] - reach)] = known[spans[0][1] + reach :] = False
     steps = [(start, np.arange(0.0, stop - 1 - start, pace)) for start, stop in runs(known)]
     if pace == 1:
@@ -218,49 +230,52 @@ def _rest(take: Take, spans: Sequence[tuple[int, int]]) -> list[Array]:
 
 
 def _controls(request: FillRequest, window: _Window, inside: np.ndarray) -> Array:
+    """Return control targets at a window's model frames, (frames, 8) mm, NaN where there is none."""
     curves = np.full((window.frames, len(CONTROLS)), np.nan)
     start, stop = request.frames
     for name, curve in request.controls.items():
-        asked = np.broadcast_to(np.asarray(curve, np.float64), (stop - start,))[:, None]
-        curves[inside, CONTROL_INDEX[name]] = interpolate(asked, window.at[inside] - start)[:, 0]
+        target = np.broadcast_to(np.asarray(curve, np.float64), (stop - start,))[:, None]
+        curves[inside, CONTROL_INDEX[name]] = interpolate(target, window.at[inside] - start)[:, 0]
     return curves
 
 
-def _placed(take: Take, request: FillRequest, motion: Array, window: _Window) -> Take:
-    """Put motion at the model rate into the take's span and region, through its seams and pins."""
+def _insert(take: Take, request: FillRequest, motion: Array, window: _Window) -> Take:
+    """Insert motion at the model rate into the take's span and region, corrected onto its seams and pins."""
     (start, stop), shapes = request.frames, np.flatnonzero(region_shapes(request.region))
-    first, last = max(0, start - _SEAM), min(len(take), stop + _SEAM)
+    first, last = max(0, start - TUNING.seam_frames), min(len(take), stop + TUNING.seam_frames)
     known = take.weights[first:last].copy()
     known[np.ix_(np.arange(start, stop) - first, shapes)] = np.nan
     known[take.lost[first:last]] = np.nan  # they follow the fill, not the fill them
     for frame, pose in request.poses().items():
         row = known[frame - first]
         known[frame - first] = np.where(np.isnan(row), pose, row)
-    made = (
-        motion[first - window.first : last - window.first]
-        if window.pace == 1
-        else _resampled(motion, window, first, last)
-    )
+    rows_of = _cut if window.pace == 1 else _resample
+    weights = rows_of(motion, window, first, last)
     there = np.isfinite(known)
-    if there.any() and not np.array_equal(
-        made[there], known[there]
-    ):  # another rate, or a span beside it is not filled yet
-        made = land(made, known, reach_frames=REACH_FRAMES * window.pace, hold=_closures(made))
-        made = np.where(there, known, np.clip(made, 0.0, 1.0))
+    # Seams are missed at another rate, or where a span beside this one is not filled yet.
+    if there.any() and not np.array_equal(weights[there], known[there]):
+        reach_frames = seams.TUNING.reach_frames * window.pace
+        weights = constrain(weights, known, reach_frames=reach_frames, hold=_closure_hold(weights))
+        weights = np.where(there, known, np.clip(weights, 0.0, 1.0))
     rows = take.weights[start:stop].copy()
-    rows[:, shapes] = made[start - first : stop - first][:, shapes]
+    rows[:, shapes] = weights[start - first : stop - first][:, shapes]
     return take.with_rows(start, rows, found=np.ones(stop - start, bool))
 
 
-def _resampled(motion: Array, window: _Window, first: int, last: int) -> Array:
-    """Return motion at the take's own frames [first, last), by a cubic spline through the model frames."""
+def _cut(motion: Array, window: _Window, first: int, last: int) -> Array:
+    """Return motion at the take's frames [first, last), where the take runs at the model rate."""
+    return motion[first - window.first : last - window.first]
+
+
+def _resample(motion: Array, window: _Window, first: int, last: int) -> Array:
+    """Resample motion to the take's own frames [first, last), by a cubic spline through the model frames."""
     degree = 3 if window.frames > 3 else 1
     spline = make_interp_spline(window.at, motion, k=degree, axis=0)
     return np.asarray(spline(np.clip(np.arange(first, last), window.at[0], window.at[-1])))
 
 
-def _closures(made: Array) -> Array:
-    """Return how much each frame's pose is held while landing, (frames,): at lips or lids that meet."""
-    gaps = bundled_measurer().measure(np.clip(made, 0.0, 1.0))
+def _closure_hold(weights: Array) -> Array:
+    """Return the pull against the correction onto the seams, (frames,): `hold` where lips or lids meet, else 0."""
+    gaps = bundled_measurer().measure(np.clip(weights, 0.0, 1.0))
     columns = [CONTROL_INDEX[name] for name in ("lips_vertical", "eyelid_right", "eyelid_left")]
-    return np.asarray(_HOLD * (gaps[:, columns].min(axis=1) < _CLOSED_MM))
+    return np.asarray(TUNING.hold * (gaps[:, columns].min(axis=1) < TUNING.closed_mm))

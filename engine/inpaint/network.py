@@ -10,18 +10,26 @@ from scipy.signal import lfilter
 from torch import Tensor, nn
 from torch.nn.utils.parametrizations import spectral_norm
 
-from engine.inpaint.gap import FEATURES
+from engine.inpaint.features import FEATURES
 from engine.models.distances import SIX, Distances
 from engine.take import SHAPES
 
-_WIDEST = 8.0  # spreads; beyond it a feature tells nothing more
-# Frames over which each curve of noise forgets itself: from jitter to moods, so that a span of any length changes its mind.
-MEMORY_FRAMES = (0.0, 4.0, 8.0, 15.0, 30.0, 30.0, 90.0, 90.0)
+
+@dataclass(frozen=True)
+class Tuning:
+    """Constants of the trained network, so that a change asks for a new training; ranges tried were not recorded."""
+
+    widest: float = 8.0  # standard deviations at which features are clipped
+    # Frames of correlation of each noise curve: from jitter to moods, so that spans of any length vary inside.
+    memory_frames: tuple[float, ...] = (0.0, 4.0, 8.0, 15.0, 30.0, 30.0, 90.0, 90.0)
+
+
+TUNING = Tuning()
 
 
 def noise_curves(frames: int, rng: np.random.Generator) -> np.ndarray:
-    """Return what a fill is drawn from, (frames, 8) float32: Ornstein-Uhlenbeck curves of unit variance."""
-    keep = np.exp(-1 / np.maximum(MEMORY_FRAMES, 1e-9))
+    """Return the generator's noise, (frames, 8) float32: Ornstein-Uhlenbeck processes of unit variance."""
+    keep = np.exp(-1 / np.maximum(TUNING.memory_frames, 1e-9))
     shocks = rng.standard_normal((frames, len(keep)))
     shocks[1:] *= np.sqrt(1 - keep**2)
     curves = [lfilter([1.0], [1.0, -k], shock) for k, shock in zip(keep, shocks.T, strict=True)]
@@ -30,10 +38,10 @@ def noise_curves(frames: int, rng: np.random.Generator) -> np.ndarray:
 
 @dataclass(frozen=True)
 class GeneratorConfig:
-    """Sizes of the generator: paper values, with several curves of noise where it has one."""
+    """Sizes of the generator: paper values, but several noise curves where the paper has one."""
 
     features: int = FEATURES
-    noise: int = len(MEMORY_FRAMES)
+    noise: int = len(TUNING.memory_frames)
     hidden: int = 128
     layers: int = 2
     dropout: float = 0.3
@@ -41,10 +49,10 @@ class GeneratorConfig:
 
 
 class Generator(nn.Module):
-    """Two bidirectional LSTM layers and a dense one, beside a linear filter: features and noise to the motion to add.
+    """Maps features and noise to the residual of the base motion: two bidirectional LSTM layers, a dense layer, a filter.
 
-    The paper's network is the recurrent path. The filter looks a few frames to either side; it carries what is nearly
-    linear (jitter to take off a guide, the pose of a viseme, the pull of a control) past the narrow recurrent state.
+    The recurrent path is the paper's network. The linear filter looks a few frames to either side; it carries what is
+    nearly linear (jitter of a guide, the pose of a viseme, the step to a control target) past the narrow recurrent state.
     """
 
     scale: Tensor
@@ -68,30 +76,30 @@ class Generator(nn.Module):
             nn.init.zeros_(parameter)
         self.register_buffer("scale", torch.ones(len(SHAPES)))
 
-    def seen(self, features: Tensor, noise: Tensor) -> Tensor:
-        """Return what both paths look at, (batch, frames, FEATURES + noise)."""
-        return torch.cat([features.clamp(-_WIDEST, _WIDEST), noise], dim=-1)
+    def inputs(self, features: Tensor, noise: Tensor) -> Tensor:
+        """Return the input of both paths, (batch, frames, FEATURES + noise)."""
+        return torch.cat([features.clamp(-TUNING.widest, TUNING.widest), noise], dim=-1)
 
     def forward(self, features: Tensor, noise: Tensor) -> Tensor:
-        """Return motion, (batch, frames, 52), of features, (batch, frames, FEATURES), and noise of the same frames."""
-        seen = self.seen(features, noise)
-        remembered, _ = self.recurrent(seen)  # (batch, frames, 2 * hidden)
-        near = self.filter(seen.transpose(1, 2)).transpose(1, 2)  # (batch, frames, 52)
-        motion: Tensor = (self.dense(self.drop(remembered)) + near) * self.scale
+        """Return the residual, (batch, frames, 52), of features, (batch, frames, FEATURES), and noise of the same frames."""
+        inputs = self.inputs(features, noise)
+        recurrent, _ = self.recurrent(inputs)  # (batch, frames, 2 * hidden)
+        near = self.filter(inputs.transpose(1, 2)).transpose(1, 2)  # (batch, frames, 52)
+        motion: Tensor = (self.dense(self.drop(recurrent)) + near) * self.scale
         return motion
 
 
-def see(weights: Tensor, distances: Distances) -> Tensor:
-    """Return what the discriminator looks at, (batch, frames, 116): weights, six distances, and the velocities of both.
+def discriminator_inputs(weights: Tensor, distances: Distances) -> Tensor:
+    """Return the discriminator's input, (batch, frames, 116): weights, six distances, and the velocities of both.
 
-    The paper shows it poses alone; beside them the little motions that make a face alive are too small to be seen.
+    The paper's has poses alone, beside which small motions are too small to be told apart.
     """
     pose = torch.cat([weights, distances(weights)], dim=-1)
     return torch.cat([pose, torch.diff(pose, dim=1, prepend=pose[:, :1])], dim=-1)
 
 
 class Discriminator(nn.Module):
-    """Four strided convolutions with spectral norm and one dense layer: a performance to a score."""
+    """Scores a performance: four strided convolutions with spectral norm and a dense layer (BSS20 section 3.2)."""
 
     scale: Tensor
 
@@ -105,7 +113,7 @@ class Discriminator(nn.Module):
         self.layers = nn.Sequential(*layers, nn.Flatten(), nn.Linear(inputs * left, 1))
         self.register_buffer("scale", torch.ones(2 * (len(SHAPES) + len(SIX))))
 
-    def forward(self, seen: Tensor) -> Tensor:
-        """Return scores, (batch,), of what `see` returns, (batch, frames, 116)."""
-        score: Tensor = self.layers(seen.transpose(1, 2))[:, 0]
+    def forward(self, inputs: Tensor) -> Tensor:
+        """Return scores, (batch,), of `discriminator_inputs`, (batch, frames, 116)."""
+        score: Tensor = self.layers(inputs.transpose(1, 2))[:, 0]
         return score

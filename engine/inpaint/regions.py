@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from engine.errors import EditError
@@ -11,8 +13,8 @@ _LOWER = ("jaw", "mouth", "cheekPuff", "tongue")
 _CENTRAL = ("jawLeft", "jawRight", "mouthLeft", "mouthRight")  # directions of the whole mouth, not sides of the face
 
 
-def _where(wanted: object) -> Mask:
-    mask = np.array([bool(wanted(name)) for name in SHAPES])  # type: ignore[operator]
+def _where(matches: Callable[[str], bool]) -> Mask:
+    mask = np.array([matches(name) for name in SHAPES])
     mask.flags.writeable = False
     return mask
 

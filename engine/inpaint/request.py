@@ -1,4 +1,4 @@
-"""What a fill is asked to do, and whether it fits the take: every mistake is one sentence, before anything is made."""
+"""The request of a fill, and the check that it fits the take: a mistake is reported before anything is generated."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 from engine.controls import control_index
 from engine.errors import EditError
 from engine.inpaint.regions import region_shapes
-from engine.inpaint.stored import FAULTS, FIELDS, GONE, guide_of, kept_guide
+from engine.inpaint.stored import FAULTS, FIELDS, GONE, guide_of, stored_guide
 from engine.pose import Pose, filled
 from engine.speech.visemes import Cue, class_of
 from engine.take import SHAPES, Array, Take, require_frames
 from engine.words import counted
 
-LOWEST, HIGHEST = -0.1, 1.1  # recorded weights stray a little outside 0..1
-FARTHEST_MM = 1000.0  # more than this is a slip; far more would overflow
+LOWEST, HIGHEST = -0.1, 1.1  # range of pinned weights: recorded ones exceed 0..1 a little
+FARTHEST_MM = 1000.0  # largest control target: more is a slip, and far more would overflow
 Frames = tuple[int, int]
 Style = Literal["auto", "bridge", "perform"]
 STYLES: tuple[Style, ...] = ("auto", "bridge", "perform")
@@ -26,13 +26,13 @@ STYLES: tuple[Style, ...] = ("auto", "bridge", "perform")
 
 @dataclass(frozen=True, eq=False)
 class FillRequest:
-    """What steers a fill; see `fill` for the meaning of most.
+    """The inputs of a fill; `fill` explains those that are not listed here.
 
     Attributes
     ----------
     lost : allows spans of a single frame
-    besides : further spans that are marked for work: they lend no motion to this one
-    unmade : those among them that are not filled yet: beside this one they are no more known than lost frames
+    besides : further spans that are marked for work: no motion is retrieved from them
+    unmade : those among them that are not filled yet: they are no context, like lost frames
     seed : which of the many possible motions
     """
 
@@ -55,15 +55,15 @@ class FillRequest:
         return {frame: filled(pose) for frame, pose in self.pins.items()}
 
     def stored(self) -> dict[str, Any]:
-        """Return all that it says, as JSON can hold it; of a guide, the frames around the span."""
+        """Return the request as JSON values; of a guide, the frames around the span."""
         start, stop = self.frames
-        there = kept_guide(self.guide, (start + self.guide_offset, stop + self.guide_offset))
-        return {name: field.encode(getattr(self, name)) for name, field in FIELDS.items()} | there
+        guide = stored_guide(self.guide, (start + self.guide_offset, stop + self.guide_offset))
+        return {name: field.encode(getattr(self, name)) for name, field in FIELDS.items()} | guide
 
     @classmethod
     def restored(cls, inputs: Mapping[str, Any]) -> FillRequest:
-        """Return the request that was stored; raises `EditError` for anything else."""
-        known = {"seed": 0, **inputs}  # it was kept beside the request before
+        """Return the request of what `stored` returned; raises `EditError` for anything else."""
+        known = {"seed": 0, **inputs}  # an older version stored the seed beside the request
         try:
             return cls(guide=guide_of(inputs), **{name: field.decode(known[name]) for name, field in FIELDS.items()})
         except FAULTS as error:
@@ -146,14 +146,14 @@ def _check_guide(request: FillRequest, guide: Take, take: Take) -> None:
 
 def _curve(name: str, curve: Array | float, length: int) -> Array:
     control_index(name)
-    asked = np.asarray(curve, np.float64)
-    if asked.ndim > 1 or asked.size not in (1, length):
+    target = np.asarray(curve, np.float64)
+    if target.ndim > 1 or target.size not in (1, length):
         raise EditError(
-            f"The curve for {name} has {counted(asked.size, 'value')} where the span has {counted(length, 'frame')}.",
+            f"The curve for {name} has {counted(target.size, 'value')} where the span has {counted(length, 'frame')}.",
             "Give one value per frame of the span, or one for all.",
         )
-    if np.isnan(asked).all():
+    if np.isnan(target).all():
         raise EditError(f"The curve for {name} asks for nothing: it holds no number.")
-    if (asked > FARTHEST_MM).any() or (asked < 0).any():
+    if (target > FARTHEST_MM).any() or (target < 0).any():
         raise EditError(f"The curve for {name} asks for a distance that is negative or beyond {FARTHEST_MM:,.0f} mm.")
-    return np.array(np.broadcast_to(asked.reshape(-1), (length,)))
+    return np.array(np.broadcast_to(target.reshape(-1), (length,)))

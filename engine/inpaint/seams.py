@@ -1,4 +1,4 @@
-"""Smooth curves through what is known: the motion under a fill, and the correction that lands it on seams and pins.
+"""Smooth interpolation of known values, and the smooth correction of generated motion onto seams and pins.
 
 Both are one small banded solve per pattern of unknown frames, shared by all shapes with that pattern.
 """
@@ -6,48 +6,61 @@ Both are one small banded solve per pattern of unknown frames, shared by all sha
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import solveh_banded
 
 from engine.take import Array, Mask
 
-REACH_FRAMES = 4.0  # how far, at the model rate, the slope at a seam is felt; chosen on validation takes
-_PULL = 1e-9  # holds what neither seam nor pin determines
+
+@dataclass(frozen=True)
+class Tuning:
+    """Constants of the interpolation."""
+
+    reach_frames: float = (
+        4.0  # frames at the model rate over which the slope at a seam fades; chosen on validation takes
+    )
+    regulariser: float = 1e-9  # pull to zero of what neither seam nor pin determines; any value this small will do
 
 
-def bridge(known: Array, *, reach_frames: float = REACH_FRAMES, hold: Array | None = None) -> Array:
-    """Return curves, (frames, n), through all known values, with NaN in `known` replaced.
+TUNING = Tuning()
+
+
+def bridge(known: Array, *, reach_frames: float = TUNING.reach_frames, hold: Array | None = None) -> Array:
+    """Interpolate curves, (frames, n), through all known values.
 
     Minimises ``sum |D2 x|^2 + |D1 x|^2 / reach^2 + hold x^2`` over the unknown values: accelerations, velocities and,
-    where asked, departure from zero. On a gap much shorter than the reach this is the cubic through both seams' values
+    weighted by `hold`, departure from zero. On a gap much shorter than the reach this is the cubic through both seams' values
     and slopes; on a longer one the slopes fade out into a straight line. At an end of the take the curve levels off.
 
     Parameters
     ----------
-    known : (frames, n); NaN marks what to make
-    reach_frames : how far the slope at a seam is felt
-    hold : (frames,), optional; how much the curve is kept at zero there
+    known : (frames, n); NaN is interpolated
+    reach_frames : frames over which the slope at a seam fades
+    hold : (frames,), optional; strength of the pull to zero
     """
-    made = np.array(known, np.float64)
+    curves = np.array(known, np.float64)
     for columns, unknown in _patterns(np.isnan(known)):
-        made[np.ix_(unknown, columns)] = _solve(made[:, columns], unknown, reach_frames, hold)
-    return made
+        curves[np.ix_(unknown, columns)] = _solve(curves[:, columns], unknown, reach_frames, hold)
+    return curves
 
 
-def bridged(known: Array) -> Array:
-    """Return weights, (frames, n), through all known ones, with what is made kept in 0..1: slopes at seams overshoot."""
+def bridge_weights(known: Array) -> Array:
+    """Interpolate weights, (frames, n), and clip what is interpolated to 0..1, since slopes at seams overshoot."""
     return np.where(np.isnan(known), np.clip(bridge(known), 0.0, 1.0), known)
 
 
-def land(made: Array, known: Array, *, reach_frames: float = REACH_FRAMES, hold: Array | None = None) -> Array:
-    """Return generated curves, (frames, n), moved as smoothly as possible onto every known value (NaN: free).
+def constrain(
+    motion: Array, known: Array, *, reach_frames: float = TUNING.reach_frames, hold: Array | None = None
+) -> Array:
+    """Move generated curves, (frames, n), as smoothly as possible onto every known value (NaN: free).
 
-    The correction is `bridge` of what is missing at the known values: SLS12 equation 5 with seams and pins as boundary
-    conditions and accelerations beside velocities, so that slopes meet too. `hold`, (frames,), keeps the correction
-    away from frames whose pose must survive, such as closed lips (the Sobolev term of SLS12 section 7.1).
+    The correction is `bridge` of the differences at the known values: SLS12 equation 5 with seams and pins as boundary
+    conditions and accelerations beside velocities, so that slopes meet too. `hold`, (frames,), weakens the correction
+    at frames whose pose must be kept, such as closed lips (the Sobolev term of SLS12 section 7.1).
     """
-    return made + bridge(known - made, reach_frames=reach_frames, hold=hold)
+    return motion + bridge(known - motion, reach_frames=reach_frames, hold=hold)
 
 
 def distance_frames(known: Array) -> Array:
@@ -56,10 +69,16 @@ def distance_frames(known: Array) -> Array:
     return np.minimum(before, after)
 
 
-def room_frames(known: Array) -> Array:
-    """Return the harmonic sum of the frames to the known values on either side of its curve, 0 where known.
+def nearest_known(known: Array) -> Array:
+    """Return how many frames each frame is from where some of its unknown shapes are known, (frames,)."""
+    nearest = np.where(np.isnan(known), distance_frames(known), np.inf).min(axis=1)
+    return np.where(np.isfinite(nearest), nearest, 0.0)
 
-    ``1 / (1 / before + 1 / after)``: how far a random walk strays between two values that it must meet.
+
+def harmonic_frames(known: Array) -> Array:
+    """Return the harmonic sum of the frames to the known values on either side, (frames, n), 0 where known.
+
+    ``1 / (1 / before + 1 / after)``: the variance of a Brownian bridge between two known values.
     """
     before, after = _sides(known)
     return before * after / np.maximum(before + after, 1)
@@ -67,18 +86,18 @@ def room_frames(known: Array) -> Array:
 
 def _sides(known: Array) -> tuple[Array, Array]:
     """Return how many frames each value is from the known ones before and after it, far more than there are at ends."""
-    frames, there = len(known), np.isfinite(known)
+    frames, known_here = len(known), np.isfinite(known)
     at = np.arange(frames, dtype=np.float64)[:, None]
-    before = np.maximum.accumulate(np.where(there, at, -2.0 * frames), axis=0)
-    after = np.minimum.accumulate(np.where(there, at, 3.0 * frames)[::-1], axis=0)[::-1]
+    before = np.maximum.accumulate(np.where(known_here, at, -2.0 * frames), axis=0)
+    after = np.minimum.accumulate(np.where(known_here, at, 3.0 * frames)[::-1], axis=0)[::-1]
     return at - before, after - at
 
 
-def smoothed(curves: Array, passes: int) -> Array:
-    """Return curves, (frames, n), after so many passes of the filter 1/4, 1/2, 1/4."""
+def binomial_smooth(curves: Array, passes: int) -> Array:
+    """Smooth curves, (frames, n), by so many passes of the filter 1/4, 1/2, 1/4."""
     for _ in range(passes):
-        held = np.concatenate([curves[:1], curves, curves[-1:]])
-        curves = (held[:-2] + 2 * held[1:-1] + held[2:]) / 4
+        padded = np.concatenate([curves[:1], curves, curves[-1:]])
+        curves = (padded[:-2] + 2 * padded[1:-1] + padded[2:]) / 4
     return curves
 
 
@@ -116,7 +135,7 @@ def _bands(frames: int, reach_frames: float, hold: Array | None) -> Array:
         for offset in range(len(stencil)):
             for first in range(len(stencil) - offset):
                 bands[offset, first : first + rows] += weight * stencil[first] * stencil[first + offset]
-    bands[0] += _PULL if hold is None else _PULL + hold
+    bands[0] += TUNING.regulariser if hold is None else TUNING.regulariser + hold
     return bands
 
 

@@ -1,4 +1,4 @@
-"""How a fill's request is kept as JSON can hold it, so that a project can make the very same motion again."""
+"""Storage of a fill's request as JSON values, so that a project can repeat the fill exactly."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from engine.take import SHAPES, Array, Take
 if TYPE_CHECKING:
     from engine.pose import Pose
 
-REACH_S = 3.0  # of a guide on either side of the span that is kept; a fill looks two seconds far
+REACH_S = 3.0  # seconds of a guide stored on either side of the span; a fill uses two
 MAX_FRAMES = 1_000_000
 MAX_SEED = 2**31 - 1
 GONE = EditError("This fill does not say what it was made from.", "Fill the span anew.")
@@ -26,7 +26,7 @@ Frames = tuple[int, int]
 
 @dataclass(frozen=True)
 class Field:
-    """How one field of a request is kept: `encode` makes of its value what JSON can hold, `decode` the value again."""
+    """The storage of one field of a request: `encode` turns its value into JSON values, `decode` turns them back."""
 
     encode: Callable[[Any], Any]
     decode: Callable[[Any], Any]
@@ -46,7 +46,7 @@ def _pins(stored: Any) -> dict[int, dict[str, float]]:
 
 
 def _curves(stored: Any) -> dict[str, Array | float]:
-    if not isinstance(stored, Mapping):  # as written before the values were kept
+    if not isinstance(stored, Mapping):  # an older version stored the names alone
         raise GONE
     return {str(name): _curve(curve) for name, curve in stored.items()}
 
@@ -73,8 +73,8 @@ def _curve(values: Any) -> Array | float:
     return np.array([np.nan if value is None else float(value) for value in values])
 
 
-def kept_guide(guide: Take | None, frames: Frames) -> dict[str, Any]:
-    """Return a guide by those of its frames that a fill of its `frames` looks at, since its file may change or vanish."""
+def stored_guide(guide: Take | None, frames: Frames) -> dict[str, Any]:
+    """Return the part of a guide that a fill of its `frames` uses, as JSON values, since its file may change or vanish."""
     if guide is None:
         return {"guide": "", "guide_frames": None}
     reach = round(REACH_S * guide.fps)
@@ -87,20 +87,20 @@ def kept_guide(guide: Take | None, frames: Frames) -> dict[str, Any]:
 
 
 def guide_of(inputs: Mapping[str, Any]) -> Take | None:
-    """Return a guide as long as the one that was used; what lies far from the span is a face at rest."""
-    kept = inputs["guide_frames"]
-    if kept is None:
+    """Return a guide of the stored one's length; far from the span its weights are zero."""
+    stored = inputs["guide_frames"]
+    if stored is None:
         if inputs["guide"]:
             raise GONE
         return None
-    rows = np.frombuffer(base64.b64decode(kept["weights"], validate=True), "<f8").reshape(-1, len(SHAPES))
-    frames, first = int(kept["frames"]), int(kept["first"])
+    rows = np.frombuffer(base64.b64decode(stored["weights"], validate=True), "<f8").reshape(-1, len(SHAPES))
+    frames, first = int(stored["frames"]), int(stored["first"])
     if not 0 <= first < first + len(rows) <= frames <= MAX_FRAMES:
         raise GONE
     weights, lost = np.zeros((frames, len(SHAPES))), np.zeros(frames, bool)
     weights[first : first + len(rows)] = rows
-    lost[first + np.array(kept["lost"], np.int64)] = True
-    return Take(weights, float(kept["fps"]), lost, name=str(inputs["guide"]))
+    lost[first + np.array(stored["lost"], np.int64)] = True
+    return Take(weights, float(stored["fps"]), lost, name=str(inputs["guide"]))
 
 
 def _visemes(stored: Any) -> tuple[Cue, ...]:
@@ -120,4 +120,4 @@ FIELDS: dict[str, Field] = {  # of a request, all but its guide
     "unmade": Field(lambda spans: [list(span) for span in spans], _spans),
     "seed": Field(int, _seed),
 }
-FAULTS = (KeyError, TypeError, ValueError, AttributeError, OverflowError)  # of what was stored by no request
+FAULTS = (KeyError, TypeError, ValueError, AttributeError, OverflowError)  # raised by JSON that is no stored request

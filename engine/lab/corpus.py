@@ -124,6 +124,11 @@ def rest_of(pieces: Iterable[Piece], piece: Piece, start: int, stop: int) -> lis
     return rest
 
 
+def person_of(source: str) -> str:
+    """Return whose take it is: takes of a person are named after them, and numbered behind an underscore."""
+    return source.split("_", maxsplit=1)[0]
+
+
 def whole_faces(pieces: Iterable[Piece]) -> list[Piece]:
     """Return the pieces that animate more than mouth and jaw."""
     return [piece for piece in pieces if piece.whole_face]

@@ -1,4 +1,4 @@
-"""Listening for a phone: one thread, a bounded queue that drops the oldest, loopback unless asked otherwise."""
+"""Listening for a phone: one thread, a bounded queue that drops the oldest, loopback unless set otherwise."""
 
 from __future__ import annotations
 

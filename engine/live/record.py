@@ -27,7 +27,7 @@ _NONE: Array = np.zeros((0, _COLUMNS))
 
 
 class Recorder:
-    """Keeps arrivals until they are asked for as a take; may be added to on one thread and read on another."""
+    """Stores arrivals until they are fetched as a take; may be added to on one thread and read on another."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()

@@ -1,4 +1,4 @@
-"""A recording on disk while it is made: what a crash leaves is a take that opens, short of its last moments."""
+"""Writes a recording to disk while it runs, so that a crash leaves a take that opens, without its last moments."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ class Spool:
 
     Parameters
     ----------
-    recorder : asked for what is new
+    recorder : polled for new arrivals
     target : where the recording will be written; `take.csv` gives `take.partial.csv`
 
     Raises
     ------
-    EngineError : when the file cannot be made
+    EngineError : when the file cannot be created
     """
 
     def __init__(self, recorder: Recorder, target: Path) -> None:
@@ -101,10 +101,10 @@ class Spool:
     def _write(self, *, settled_s: float) -> None:
         """Append the rows that are at least so old; where that fails the next call tries them again."""
         new = self._recorder.since(self._taken)
-        held = np.concatenate([self._held, new])
-        held = held[np.argsort(held[:, 0], kind="stable")]
-        until_s = held[-1, 0] - settled_s if len(held) else 0.0
-        ready, rest = held[held[:, 0] <= until_s], held[held[:, 0] > until_s]
+        pending = np.concatenate([self._held, new])
+        pending = pending[np.argsort(pending[:, 0], kind="stable")]
+        until_s = pending[-1, 0] - settled_s if len(pending) else 0.0
+        ready, rest = pending[pending[:, 0] <= until_s], pending[pending[:, 0] > until_s]
         ready = ready[np.diff(ready[:, 0], prepend=self._last_s) > 0]
         if len(ready):  # what came late before the stream's first packet would have no timecode
             first_s = float(ready[0, 0]) if np.isnan(self._first_s) else self._first_s

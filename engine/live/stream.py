@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.clean.infer import Cleaner, CleanState, believable, bundled
+from engine.clean.infer import Cleaner, CleanState, bundled, plausible
 from engine.live.decode import decode
 from engine.live.packet import Drop, Floats, Packet
 from engine.take import SHAPES
@@ -49,11 +49,11 @@ class LiveFrame:
 
 @dataclass(frozen=True, eq=False)
 class Arrival:
-    """A believable packet with its place in time; what a recorder keeps, late ones too.
+    """A plausible packet with its place in time; what a recorder keeps, late ones too.
 
     Attributes
     ----------
-    weights : (52,) float32; None where the phone saw no face or said what no face can
+    weights : (52,) float32; None where the phone saw no face or sent implausible weights
     late : whether a newer frame had come before it
     """
 
@@ -159,7 +159,7 @@ class Stream:
     def _follows(self, subject: str, arrived_s: float) -> bool:
         """Return whether a subject is the one that is followed: the first, or another that sends where that fell silent.
 
-        While a recording is made, and where the user chose, the subject stays.
+        During a recording, and where the user chose, the subject stays.
         """
         self._hear(subject, arrived_s)
         if self.subject is None:
@@ -187,7 +187,7 @@ class Stream:
 
     def _arrival(self, packet: Packet, arrived_s: float) -> Arrival:
         weights = packet.weights
-        if weights is not None and believable(weights) is None:
+        if weights is not None and plausible(weights) is None:
             self.counts["weights that no face has"] += 1
             weights = None
         time_s, late = self._clock.place(packet, arrived_s)
@@ -202,7 +202,7 @@ class Stream:
         self._state = self._advance(arrival)
         self._time_s = arrival.time_s
         self.counts["frames"] += 1
-        clean = (1 - self.strength) * self._raw + self.strength * self._state.shown
+        clean = (1 - self.strength) * self._raw + self.strength * self._state.output
         latency_ms = (now() - arrived_s) * 1e3
         lost = arrival.weights is None
         return LiveFrame(

@@ -1,4 +1,4 @@
-"""A mesh that follows a few of its points (ZLL17 section 3.3): no shapes needed."""
+"""Drives a mesh without shapes by a few feature points (ZLL17 section 3.3)."""
 
 from __future__ import annotations
 
@@ -75,16 +75,16 @@ class MeshDriver:
         labelled = np.unique(parts[self._points])
         self._solved = np.flatnonzero(np.isin(parts, labelled))
         self._influence = _influence(self._rest, triangles, self._solved, self._points, settings)
-        self._carried = _Carried.build(self._rest, triangles, parts, self._solved, self._points)
+        self._rigid = _RigidParts.build(self._rest, triangles, parts, self._solved, self._points)
 
     @property
     def points(self) -> Indices:
-        """The vertices that lead, (m,)."""
+        """The feature points' vertices, (m,)."""
         return self._points
 
     @property
     def memory_bytes(self) -> int:
-        """Return what stays in memory between frames."""
+        """Return the memory used between frames."""
         return int(self._influence.nbytes + self._rest.nbytes + self._solved.nbytes)
 
     def drive(self, positions: Array) -> Array:
@@ -123,7 +123,7 @@ class MeshDriver:
     def _place(self, moved: Array, pose: Poses) -> Array:
         posed = self._rest.copy()
         posed[self._solved] += (moved.T @ self._influence.T).T  # this way round no threads are woken
-        self._carried.carry(posed, self._rest)
+        self._rigid.carry(posed, self._rest)
         posed = posed @ (pose.scale[0] * pose.turn[0])
         return np.asarray(posed + pose.shift[0])
 
@@ -153,22 +153,22 @@ def _require_usable(rest: Array, points: Indices) -> None:
 def _influence(
     rest: Array, triangles: npt.NDArray[np.integer], solved: Indices, points: Indices, settings: Settings
 ) -> Array:
-    """Return how far each feature point moves each vertex of the labelled parts, (solved, m)."""
+    """Return the matrix from feature points to vertices of the labelled parts, (solved, m)."""
     place = np.full(len(rest), -1)
     place[solved] = np.arange(len(solved))
     local = place[triangles[(place[triangles] >= 0).all(axis=1)]]
     neighbourhoods = rings(local, rest[solved], size=settings.rings)
-    energy = _of_size_one(
+    energy = _normalised(
         alignment(rest[solved], neighbourhoods, dimension=settings.dimension, stiffness=settings.stiffness)
     )
     if settings.curvature:
         laplacian = cotangent_laplacian(rest[solved], local)
-        energy = (energy + settings.curvature * _of_size_one(sp.csc_array(laplacian.T @ laplacian))).tocsc()
+        energy = (energy + settings.curvature * _normalised(sp.csc_array(laplacian.T @ laplacian))).tocsc()
     return LabelSolver(energy, place[points], beta=settings.beta).influence()
 
 
-def _of_size_one(energy: sp.csc_array) -> sp.csc_array:
-    """Return an energy whose average vertex pays one for a move of its own."""
+def _normalised(energy: sp.csc_array) -> sp.csc_array:
+    """Normalise an energy to a mean diagonal of 1."""
     return sp.csc_array(energy * (energy.shape[0] / max(float(energy.diagonal().sum()), 1e-300)))
 
 
@@ -181,10 +181,10 @@ def _from_neighbours(rest: Array, moved: Array, seen: npt.NDArray[np.bool_]) -> 
 
 
 @dataclass(frozen=True, eq=False)
-class _Carried:
-    """Parts without feature points, each held by anchors.
+class _RigidParts:
+    """Moves parts without feature points rigidly with anchors.
 
-    A strip such as lashes is held by the skin that it lies on; a body such as an eye or a tooth by the feature points
+    A strip such as lashes follows the skin that it lies on; a body such as an eye or a tooth by the feature points
     round it, of which the lids and lips are the few that the fit leaves out.
 
     Attributes
@@ -199,22 +199,22 @@ class _Carried:
     @staticmethod
     def build(
         rest: Array, triangles: npt.NDArray[np.integer], parts: Indices, solved: Indices, points: Indices
-    ) -> _Carried:
+    ) -> _RigidParts:
         """Choose the anchors of each part."""
         names = np.setdiff1d(parts, parts[solved])
         if not len(names):
-            return _Carried(np.zeros((0, ANCHORS), np.int64), ())
+            return _RigidParts(np.zeros((0, ANCHORS), np.int64), ())
         members = tuple(np.flatnonzero(parts == name) for name in names)
         strips = _open_share(triangles, parts) > OPEN_SHARE
         anchors = np.zeros((len(names), ANCHORS), np.int64)
         skin, leading = cKDTree(rest[solved]), cKDTree(rest[points])
         for index, (name, own) in enumerate(zip(names, members, strict=True)):
             if strips[name]:
-                held = solved[np.unique(skin.query(rest[own])[1])]
+                candidates = solved[np.unique(skin.query(rest[own])[1])]
             else:
-                held = points[leading.query(rest[own].mean(axis=0), k=min(ANCHORS, len(points)))[1]]
-            anchors[index] = held[np.linspace(0, len(held) - 1, ANCHORS).round().astype(int)]
-        return _Carried(anchors, members)
+                candidates = points[leading.query(rest[own].mean(axis=0), k=min(ANCHORS, len(points)))[1]]
+            anchors[index] = candidates[np.linspace(0, len(candidates) - 1, ANCHORS).round().astype(int)]
+        return _RigidParts(anchors, members)
 
     def carry(self, posed: Array, rest: Array) -> None:
         """Move the carried parts of `posed`, (n, 3), with their anchors, in place."""
@@ -238,9 +238,9 @@ def _open_share(triangles: npt.NDArray[np.integer], parts: Indices) -> Array:
 
 
 def aim(points_rest: Array, source_rest: Array, displacements: Array) -> tuple[Array, Poses]:
-    """Return where feature points go, (frames, m, 3), when another face's markers lead them, and how it was laid on the mesh.
+    """Return targets of feature points, (frames, m, 3), from another face's markers, and the similarity onto the mesh.
 
-    The source's movements are turned and scaled as its face at rest is laid onto the mesh; the head stays still.
+    The source's displacements are rotated and scaled like its face at rest onto the mesh; the head stays still.
 
     Parameters
     ----------

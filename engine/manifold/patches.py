@@ -1,4 +1,4 @@
-"""Local patches of a data set, and the solve that keeps them while a few data points are given (ZLL17 section 3.1)."""
+"""Alignment of local patches of a data set, and its solve for a few given data points (ZLL17 section 3.1)."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ CENTRE_SHARE = 10.0  # weight of a patch's own vertex against all its neighbours
 COLUMNS = 16  # solved at a time: with one BLAS thread, as the app sets, 20 % faster than four; more gain nothing
 PANEL = 8  # columns factorised at a time: 8 % faster than SuperLU's default at a mesh's few entries a column
 REACH = 2.0  # neighbours count by distance to the power of minus this
-NEAR = 0.05  # of a patch's mean distance: what is nearer counts no more, else a held pose would cut itself off
+NEAR = 0.05  # of a patch's mean distance: nearer points get no larger weight, or a constant pose would form a patch of its own
 COTANGENTS = (1e-3, 10.0)  # half of them, of a triangle's angles
 CHUNK_ENTRIES = 1 << 20  # of patch matrices that are in memory at a time
-Tell = Callable[[float], None]  # is told the share that is done, 0..1; it may raise, to stop
+Progress = Callable[[float], None]  # is called with the share that is done, 0..1; it may raise, to stop
 
 
-def silent(_: float) -> None:
-    """Tell nobody."""
+def ignore(_: float) -> None:
+    """Ignore the progress."""
 
 
 def rings(triangles: npt.NDArray[np.integer], points: Array, *, size: int = 1) -> sp.csr_array:
@@ -91,30 +91,30 @@ def alignment(
     *,
     dimension: int = 3,
     stiffness: float = 0.0,
-    tell: Tell = silent,
+    progress: Progress = ignore,
 ) -> sp.csc_array:
-    """Return B of ZLL17 equation 15: what it costs a data set to leave the local structure of `points`.
+    """Return B of ZLL17 equation 15, the energy of leaving the local structure of `points`.
 
     ``trace(Y^T B Y) = sum_i min_{D_i, c_i} |q_i (Y_i - X_i~ D_i - c_i)|^2 + stiffness * s_i^2 |D_i|^2`` with X_i~ the
     tangent coordinates of patch i (local PCA), q_i the roots of its neighbours' weights, and s_i its largest extent.
-    With no stiffness every affine motion of a patch is free, as in the paper; with some, Y is best a displacement, and
-    a patch that turns or stretches without a label's asking for it pays.
+    With no stiffness every affine motion of a patch is free, as in the paper; with some, Y should be a displacement, and
+    patches are penalised for rotating or stretching.
 
     Parameters
     ----------
     points : (n, D) data points
     neighbourhoods : (n, n) weights; row i holds the members of patch i
     dimension : of the tangent space; directions that a patch does not have are left out
-    tell : is told the share that is done
+    progress : called with the share that is done
     """
-    rows, columns, values = zip(*_scattered(points, neighbourhoods, dimension, stiffness, tell), strict=True)
+    rows, columns, values = zip(*_scattered(points, neighbourhoods, dimension, stiffness, progress), strict=True)
     places = (np.concatenate(rows), np.concatenate(columns))
     count = len(points)
     return sp.coo_array((np.concatenate(values), places), shape=(count, count)).tocsc()
 
 
 def _scattered(
-    points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float, tell: Tell
+    points: Array, neighbourhoods: sp.csr_array, dimension: int, stiffness: float, progress: Progress
 ) -> Iterator[tuple[npt.NDArray[np.integer], npt.NDArray[np.integer], Array]]:
     """Yield rows, columns and values of the patches' matrices, some patches of one size at a time."""
     sizes = np.diff(neighbourhoods.indptr)
@@ -122,7 +122,7 @@ def _scattered(
     for size in np.unique(sizes[sizes > 0]):
         alike = np.flatnonzero(sizes == size)
         for patches in np.array_split(alike, -(-len(alike) * int(size) ** 2 // CHUNK_ENTRIES)):
-            tell(done / len(sizes))
+            progress(done / len(sizes))
             done += len(patches)
             entries = neighbourhoods.indptr[patches][:, None] + np.arange(size)
             members = neighbourhoods.indices[entries]
@@ -147,7 +147,7 @@ def _patch_matrices(members: Array, weights: Array, dimension: int, stiffness: f
 
 
 def _tangents(centred: Array, dimension: int, stiffness: float) -> Array:
-    """Return orthogonal directions (patches, size, d) in which a patch moves freely, shortened by what they cost."""
+    """Return orthogonal directions (patches, size, d) in which a patch moves freely, scaled by their cost."""
     tangent, extent, _ = np.linalg.svd(centred, full_matrices=False)
     tangent, extent = tangent[:, :, :dimension], extent[:, :dimension]
     widest = np.maximum(extent[:, :1], 1e-300)
@@ -179,7 +179,7 @@ def cotangent_laplacian(rest: Array, triangles: npt.NDArray[np.integer]) -> sp.c
 
 
 class LabelSolver:
-    """Every data point from a few labelled ones (ZLL17 equation 18), factorised once.
+    """Solves for every data point from a few labelled ones (ZLL17 equation 18), factorised once.
 
     Minimises ``trace(Y^T B Y) + beta * |Y[labelled] - labels|^2`` by the sparse system ``(B + beta S) Y = beta S labels``.
 
@@ -198,8 +198,8 @@ class LabelSolver:
         count = energy.shape[0]
         self._labelled, self._count = labelled, count
         self._beta = np.broadcast_to(np.asarray(beta, np.float64), len(labelled))
-        held = sp.coo_array((self._beta, (labelled, labelled)), shape=(count, count))
-        system = (energy + held).tocsc()
+        selected = sp.coo_array((self._beta, (labelled, labelled)), shape=(count, count))
+        system = (energy + selected).tocsc()
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
@@ -218,26 +218,26 @@ class LabelSolver:
 
     def solve(self, labels: Array) -> Array:
         """Return all data points, (n, k), for labels (m, k)."""
-        asked = np.zeros((self._count, labels.shape[1]))
-        np.add.at(asked, self._labelled, self._beta[:, None] * labels)
-        parts = [self._factor.solve(asked[:, k : k + COLUMNS]) for k in range(0, asked.shape[1], COLUMNS)]
-        return np.concatenate(parts, axis=1) if parts else asked
+        right = np.zeros((self._count, labels.shape[1]))
+        np.add.at(right, self._labelled, self._beta[:, None] * labels)
+        parts = [self._factor.solve(right[:, k : k + COLUMNS]) for k in range(0, right.shape[1], COLUMNS)]
+        return np.concatenate(parts, axis=1) if parts else right
 
     def influence(self) -> Array:
-        """Return how far each label moves each data point, (n, m): all solves to come in one matrix product."""
+        """Return the matrix from labels to data points, (n, m), with which a solve is one product."""
         return self.solve(np.eye(len(self._labelled)))
 
     def uncertainty(self) -> Array:
-        """Return how loosely the labels hold each data point, (n,): the root of the diagonal of ``(B + beta S)^-1``.
+        """Return the uncertainty of each data point, (n,): the root of the diagonal of ``(B + beta S)^-1``.
 
         Were the energy a likelihood, this would be each point's standard deviation up to a common factor.
         """
         spread = np.empty(self._count)
         for start in range(0, self._count, COLUMNS):
             columns = np.arange(start, min(start + COLUMNS, self._count))
-            asked = np.zeros((self._count, len(columns)))
-            asked[columns, columns - start] = 1.0
-            spread[columns] = self._factor.solve(asked)[columns, columns - start]
+            right = np.zeros((self._count, len(columns)))
+            right[columns, columns - start] = 1.0
+            spread[columns] = self._factor.solve(right)[columns, columns - start]
         return np.sqrt(np.maximum(spread, 0.0))
 
 

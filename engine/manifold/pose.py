@@ -67,7 +67,7 @@ def _weighted(rest: Array, moved: Array, weights: Array, *, scaled: bool, mirror
     left, spread, right = np.linalg.svd((share[:, :, None] * x).transpose(0, 2, 1) @ y)
     sign = np.ones_like(spread)
     flips = np.linalg.det(left @ right) < 0
-    certain = spread[:, 2] > 1e-3 * spread[:, 0]  # flat points do not tell a mirror image from a turned one
+    certain = spread[:, 2] > 1e-3 * spread[:, 0]  # for flat points a mirror image is also a rotation
     sign[:, 2] = np.where(flips & ~(certain & mirrored), -1.0, 1.0)
     turn = (left * sign[:, None, :]) @ right
     size = np.einsum("fn,fnd->f", share, x**2)

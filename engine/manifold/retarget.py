@@ -1,4 +1,4 @@
-"""A performance onto another head from a few labelled frames (ZLL17 section 3.2)."""
+"""Retargets a performance to another head from a few labelled frames (ZLL17 section 3.2)."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from engine.errors import EditError
-from engine.manifold.patches import Indices, LabelSolver, Tell, alignment, silent, similar
+from engine.manifold.patches import Indices, LabelSolver, Progress, alignment, ignore, similar
 from engine.pose import Pose, filled
 from engine.take import SHAPES, Array, Take
 from engine.words import counted
 
-COORDINATES = 40  # principal coordinates that tell frames apart; the rest is noise, and slow to search
-GAIN_RIDGE = 0.3  # how far a gain is doubted, in labels of typical size: chosen on the validation takes
+COORDINATES = 40  # principal coordinates that distinguish frames; the rest is noise, and slow to search
+GAIN_RIDGE = 0.3  # ridge of a gain, in labels of typical size; chosen on the validation takes
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How frames hold together; chosen on the training takes (`retake evaluate manifold`).
+    """The settings of the manifold; chosen on the training takes (`retake evaluate manifold`).
 
     neighbours : frames in a patch
     dimension : of a patch's tangent space, the directions in which source and target may move differently
-    stiffness : cost of moving otherwise than the base does
+    stiffness : cost of motion that differs from the base's
     beta : weight of a labelled frame
     at_once : frames solved together; of a longer take these are spread over it, and each other frame follows its patch
     """
@@ -38,17 +38,17 @@ class Settings:
 
 
 class Retargeter:
-    """Target frames whose local structure is the source's, given a few of them; factorised once for its labels.
+    """Solves for target frames with the source's local structure, given a few of them; factorised once for its labels.
 
     With R the target less a first guess (`base`), minimises ``trace(R^T B R) + beta * |R[labelled] - labels|^2``, B from
     patches of like source frames (ZLL17 eq. 15): between labels the target moves as the source does.
 
     Parameters
     ----------
-    source : (frames, D) what the source does, such as feature points in mm
+    source : (frames, D) features of the source, such as feature points in mm
     base : (frames, q) the target as it would be with no labels
     labelled : (m,) frames
-    tell : is told the share that is done, 0..1; it may raise, to stop
+    progress : called with the share that is done, 0..1; it may raise, to stop
 
     Raises
     ------
@@ -61,7 +61,7 @@ class Retargeter:
         base: Array,
         labelled: Indices,
         settings: Settings = Settings(),
-        tell: Tell = silent,
+        progress: Progress = ignore,
     ) -> None:
         self._base = np.asarray(base, np.float64)
         self._labelled = np.asarray(labelled, np.int64)
@@ -73,7 +73,7 @@ class Retargeter:
             similar(points[self._solved], size=settings.neighbours),
             dimension=settings.dimension,
             stiffness=settings.stiffness,
-            tell=tell,
+            progress=progress,
         )
         place = np.searchsorted(self._solved, self._labelled)
         self._solver = LabelSolver(energy, place, beta=settings.beta)
@@ -97,7 +97,7 @@ class Retargeter:
         return result
 
     def uncertainty(self) -> Array:
-        """Return how loosely the labels hold each frame, (frames,); a frame that was not solved has its nearest one's."""
+        """Return each frame's standard deviation given the labels, (frames,), up to a factor; of the nearest solved frame."""
         known = self._solver.uncertainty()
         nearest = cKDTree(self._points[self._solved]).query(self._points)[1]
         return np.asarray(known[nearest], np.float64)
@@ -119,7 +119,7 @@ def suggest_frames(source: Array, count: int, *, labelled: Sequence[int] = (), a
 
     Parameters
     ----------
-    source : (frames, D) what the source does
+    source : (frames, D) features of the source
     count : how many to add
     labelled : frames that have a label already
     at_once : frames that are compared; of a longer take these are spread over it
@@ -141,13 +141,13 @@ def suggest_frames(source: Array, count: int, *, labelled: Sequence[int] = (), a
 def scaled_to(base: Array, rest: Array, labelled: Indices, labels: Array) -> Array:
     """Return the base, (frames, n, d), each point with its own linear gain that brings it nearer to its labels.
 
-    The gain is a ridge regression through rest, of what labels ask beyond the base on how far the base is from rest. A
-    few labels then tell about frames unlike any of them, where the manifold alone would go back to the base.
+    The gain is a ridge regression through rest, of the labels' difference from the base on the base's difference from rest. A
+    few labels then decide frames unlike any of them, where the manifold alone would go back to the base.
 
     Parameters
     ----------
     rest : (n, d) the base at rest
-    labelled, labels : (m,) frames and what is asked of them, (m, n, d)
+    labelled, labels : (m,) frames and their labels, (m, n, d)
     """
     away = base - rest
     known, missing = away[labelled], labels - base[labelled]
@@ -173,15 +173,15 @@ def retarget_points(
     )
     base = target_rest + size * (source - source_rest)
     frames = np.array(sorted(labels), np.int64)
-    asked = np.array([labels[int(frame)] for frame in frames]).reshape(-1, *target_rest.shape)
+    targets = np.array([labels[int(frame)] for frame in frames]).reshape(-1, *target_rest.shape)
     moved = (source - source_rest).reshape(len(source), -1)
-    made, _ = _between_rest_and_labels(moved, base, target_rest, frames=frames, labels=asked, settings=settings)
-    return made
+    target, _ = _between_rest_and_labels(moved, base, target_rest, frames=frames, labels=targets, settings=settings)
+    return target
 
 
 @dataclass(frozen=True, eq=False)
 class Labelled:
-    """A take made from labels, and how loosely they hold each of its frames, (frames,): the loosest wants the next label."""
+    """A take from labels, and the uncertainty of each frame, (frames,): the largest is the next to label."""
 
     take: Take
     uncertainty: Array
@@ -193,33 +193,33 @@ def from_labels(
     settings: Settings | None = None,
     *,
     source: Array | None = None,
-    tell: Tell = silent,
+    progress: Progress = ignore,
 ) -> Labelled:
-    """Return the take as a target with shapes plays it, given the target's weights at a few frames.
+    """Retarget a take to a target with shapes, given the target's weights at a few frames.
 
     Parameters
     ----------
     take : the target's weights as they would be with no labels
     labels : by frame; a shape that is not named, or NaN, stays as the take has it there
-    source : (frames, D) what tells frames apart, zero where the source is at rest; the take's weights without it
-    tell : is told the share that is done, 0..1; it may raise, to stop
+    source : (frames, D) features that distinguish frames, zero where the source is at rest; the take's weights without it
+    progress : called with the share that is done, 0..1; it may raise, to stop
     """
     frames = np.array(sorted(labels), np.int64)
     _require_within(frames, len(take))
     poses = np.array([filled(labels[int(frame)]) for frame in frames])
-    asked = np.where(np.isnan(poses), take.weights[frames], poses)[..., None]
+    targets = np.where(np.isnan(poses), take.weights[frames], poses)[..., None]
     points, rest = take.weights if source is None else source, np.zeros((len(SHAPES), 1))
-    made, uncertainty = _between_rest_and_labels(
-        points, take.weights[..., None], rest, frames=frames, labels=asked, settings=settings, tell=tell
+    target, uncertainty = _between_rest_and_labels(
+        points, take.weights[..., None], rest, frames=frames, labels=targets, settings=settings, progress=progress
     )
     low, high = np.minimum(take.weights.min(axis=0), 0.0), np.maximum(take.weights.max(axis=0), 1.0)
-    return Labelled(take.with_weights(np.clip(made[..., 0], low, high)), uncertainty)
+    return Labelled(take.with_weights(np.clip(target[..., 0], low, high)), uncertainty)
 
 
 def retarget_weights(
     take: Take, labels: Mapping[int, Pose], settings: Settings | None = None, *, source: Array | None = None
 ) -> Take:
-    """Return what `from_labels` makes, the take alone."""
+    """Return the take of `from_labels` alone."""
     return from_labels(take, labels, settings, source=source).take
 
 
@@ -231,18 +231,18 @@ def _between_rest_and_labels(
     frames: Indices,
     labels: Array,
     settings: Settings | None,
-    tell: Tell = silent,
+    progress: Progress = ignore,
 ) -> tuple[Array, Array]:
-    """Return the target, (frames, n, d), and how loosely each frame is held, of a source that is zero at rest.
+    """Return the target, (frames, n, d), and each frame's uncertainty, of a source that is zero at rest.
 
     Rest is one more data point, and one more label: where the source is at rest, so is the target.
     """
     _require_within(frames, len(base))
     guess = np.concatenate([scaled_to(base, rest, frames, labels), rest[None]]).reshape(len(base) + 1, -1)
     points = np.vstack([source.reshape(len(source), -1), np.zeros((1, source[0].size))])
-    retargeter = Retargeter(points, guess, np.append(frames, len(base)), settings or Settings(), tell)
-    made = retargeter.solve(np.vstack([labels.reshape(len(frames), -1), rest.reshape(1, -1)]))
-    return made[:-1].reshape(base.shape), retargeter.uncertainty()[:-1]
+    retargeter = Retargeter(points, guess, np.append(frames, len(base)), settings or Settings(), progress)
+    target = retargeter.solve(np.vstack([labels.reshape(len(frames), -1), rest.reshape(1, -1)]))
+    return target[:-1].reshape(base.shape), retargeter.uncertainty()[:-1]
 
 
 def _require_within(labelled: Indices, frames: int) -> None:
@@ -269,7 +269,7 @@ def _spread(frames: int, labelled: Indices, at_once: int) -> Indices:
 
 
 def _by_patch(points: Array, others: Indices, solved: Indices, known: Array, settings: Settings) -> Array:
-    """Return what frames that were not solved do: the affine map of the patch of solved frames round each."""
+    """Return the frames that were not solved, by the affine map of the patch of solved frames round each."""
     size = min(settings.neighbours, len(solved))
     tree = cKDTree(points[solved])
     result = np.zeros((len(others), known.shape[1]))

@@ -27,5 +27,5 @@ class BatchNormUNet(nn.Module):
         fine = self.down1(curves)
         half = self.down2(self.pool(fine))
         half = self.up2(torch.cat([self.grow(self.bottom(self.pool(half))), half], dim=1))
-        made: Tensor = self.last(self.up1(torch.cat([self.grow(half), fine], dim=1)))
-        return made
+        mapped: Tensor = self.last(self.up1(torch.cat([self.grow(half), fine], dim=1)))
+        return mapped

@@ -78,8 +78,8 @@ def read_verdict(database: sqlite3.Connection) -> Verdict | None:
 def _note_row(note: Note) -> tuple[object, ...]:
     replies = json.dumps([asdict(reply) for reply in note.replies])
     drawing = json.dumps(None if note.drawing is None else asdict(note.drawing))
-    told = note.frame, note.author, note.time, note.text, note.frames, note.region
-    return *told, replies, note.resolved_by, note.resolved_at, drawing
+    row_values = note.frame, note.author, note.time, note.text, note.frames, note.region
+    return *row_values, replies, note.resolved_by, note.resolved_at, drawing
 
 
 def _note(row: tuple[Any, ...], budget: Budget) -> Note:

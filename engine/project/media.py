@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from engine.errors import FormatError
 from engine.formats.base.content import require_file, unread
-from engine.project.held import is_open
+from engine.project.open_files import is_open
 from engine.project.records import Media
 
 ENDING = ".retake"

@@ -33,8 +33,8 @@ class Edit:
     title : what the user did, as the Undo menu shows it
     start : first frame
     weights : (frames, 52) what the edit put in place; no frames where it changed none
-    asked : (frames, 16), what had been asked for up to and including this edit; NaN where nothing was
-    inputs : what the edit was made from, as JSON can hold it, so that it can be run again
+    asked : (frames, 16), control targets up to and including this edit; NaN for none
+    inputs : its request as JSON values, so that it can be run again
     lost : (frames,) bool, which of its frames are lost after it; None in projects that did not say so yet
     """
 
@@ -137,7 +137,7 @@ class Marks:
 
 
 def marks_of(stored: Mapping[str, Any]) -> Marks:
-    """Return marks from what `dataclasses.asdict` made of them; raises `KeyError` or `TypeError` for anything else."""
+    """Return marks from their `dataclasses.asdict` form; raises `KeyError` or `TypeError` for anything else."""
     return Marks(
         spans=tuple(Span(**entry) for entry in stored["spans"]),
         pins=tuple(Pin(**entry) for entry in stored["pins"]),
@@ -170,7 +170,7 @@ def reading_edit(title: str, before: ReadAs, after: ReadAs) -> Edit:
 
 
 def read_as_of(stored: Mapping[str, Any]) -> ReadAs:
-    """Return a reading from what `dataclasses.asdict` made of it.
+    """Return a reading from its `dataclasses.asdict` form.
 
     Raises `KeyError`, `TypeError` or `EditError` for anything else.
     """

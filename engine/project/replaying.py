@@ -65,18 +65,18 @@ def replay(contents: Contents) -> Replayed:
         if in_effect:
             shown[0][rows], shown[1][rows], shown[2][rows] = edit.weights, edit.asked, lost[rows]
         if edit.kind == READING:
-            found, wanted = (read_as_of(edit.inputs[which]) for which in ("before", "after"))
-            if found.swapped != wanted.swapped:
+            found, target = (read_as_of(edit.inputs[which]) for which in ("before", "after"))
+            if found.swapped != target.swapped:
                 for curves in (weights, *([shown[0]] if in_effect else [])):
                     curves[:] = exchange(curves)
-            reading = wanted if in_effect else reading
+            reading = target if in_effect else reading
     for array in shown:
         array.flags.writeable = False
     original = contents.original if reading is None else livelink.put(contents.original, reading)
     take = replace(original, weights=shown[0], lost=shown[2])
     if first is not None:
         original = replace(original, weights=first[0], lost=first[1])
-    return Replayed(take, shown[1], tuple(before), *said(contents.edits, contents.position), original, reading)
+    return Replayed(take, shown[1], tuple(before), *visemes_after(contents.edits, contents.position), original, reading)
 
 
 def _take_before(contents: Contents) -> tuple[dict[int, tuple[Array, Mask]], tuple[Array, Mask] | None]:
@@ -103,10 +103,12 @@ def _take_before(contents: Contents) -> tuple[dict[int, tuple[Array, Mask]], tup
     return found, shown if aligned else None
 
 
-def said(edits: Iterable[Edit], position: int = 0) -> tuple[VisemeLane | None, tuple[VisemeChange | None, ...]]:
-    """Return the visemes lane after so many edits, and what each of all edits does to the lane that it finds.
+def visemes_after(
+    edits: Iterable[Edit], position: int = 0
+) -> tuple[VisemeLane | None, tuple[VisemeChange | None, ...]]:
+    """Return the viseme lane after the first `position` edits, and the change that each of all edits makes to its lane.
 
-    Raises `KeyError`, `TypeError` or `ValueError` where an edit tells a step that its lane could not take.
+    Raises `KeyError`, `TypeError` or `ValueError` where an edit stores a change that its lane does not allow.
     """
     lane = shown = None
     changes: list[VisemeChange | None] = []

@@ -1,4 +1,4 @@
-"""What a reviewer leaves in a project: notes with replies and drawn marks, and verdicts."""
+"""The records of a reviewer in a project: notes with replies and drawn marks, and verdicts."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def verdict_from(sentence: str) -> tuple[Verdict, ...]:
 
 
 def note_of(stored: Mapping[str, Any]) -> Note:
-    """Return a note from what `dataclasses.asdict` made of it; raises `KeyError` or `TypeError` for anything else."""
+    """Return a note from its `dataclasses.asdict` form; raises `KeyError` or `TypeError` for anything else."""
     parts = dict(stored)
     parts["replies"] = replies_of(parts.get("replies", ()))
     parts["drawing"] = drawing_of(parts.get("drawing"))
@@ -115,12 +115,12 @@ def note_of(stored: Mapping[str, Any]) -> Note:
 
 
 def replies_of(stored: Sequence[Mapping[str, Any]]) -> tuple[Reply, ...]:
-    """Return replies from what `dataclasses.asdict` made of them; raises `TypeError` for anything else."""
+    """Return replies from their `dataclasses.asdict` form; raises `TypeError` for anything else."""
     return tuple(Reply(**entry) for entry in stored)
 
 
 def drawing_of(stored: Mapping[str, Any] | None) -> Drawing | None:
-    """Return a drawing from what `dataclasses.asdict` made of it.
+    """Return a drawing from its `dataclasses.asdict` form.
 
     Raises `KeyError` or `TypeError` for anything else.
     """

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 
 from engine.project.blobs import DamagedError
 from engine.project.records import Edit, Marks, Media, Pin, Span
-from engine.project.replaying import said
+from engine.project.replaying import visemes_after
 from engine.project.reviewing import Drawing, Note, Reply, Verdict
 from engine.quality.settings import Dismissal, FlagSettings
 from engine.take import SHAPE_INDEX
@@ -36,8 +36,8 @@ def require(sound: bool, what: str) -> None:
 def require_marks(marks: Marks, length: int) -> None:
     """Raise `DamagedError` where one of the marks cannot belong to a take of so many frames."""
     for what in ("spans", "pins", "notes", "media", "verdicts", "dismissals"):
-        held = getattr(marks, what)
-        require(len(held) <= MAX_MARKS, f"it has {len(held):,} {what}, and Retake reads at most {MAX_MARKS:,}")
+        stored = getattr(marks, what)
+        require(len(stored) <= MAX_MARKS, f"it has {len(stored):,} {what}, and Retake reads at most {MAX_MARKS:,}")
     require(all(_is_span(span, length) for span in marks.spans), "a span is not within the take")
     require(all(_is_pin(pin, length) for pin in marks.pins), "a pin is not within the take, or holds no pose")
     require(all(_is_note(note, length) for note in marks.notes), "a note is not within the take, or no text")
@@ -57,7 +57,7 @@ def require_verdict(verdict: Verdict) -> None:
 def require_visemes(edits: tuple[Edit, ...]) -> None:
     """Raise `DamagedError` where a step on the visemes does not fit the lane that it finds."""
     try:
-        said(edits)
+        visemes_after(edits)
     except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
         raise DamagedError("an edit does not say what it did to the visemes") from error
 
@@ -88,8 +88,13 @@ def _is_note(note: Note, length: int) -> bool:
     if not (_are_frames((note.frame, note.frames)) and 0 <= note.frame < note.stop <= length):
         return False
     texts = note.author, note.time, note.region, note.resolved_by, note.resolved_at
-    told = _is_text(note.text, MAX_TEXT) and all(_is_text(text) for text in texts)
-    return told and len(note.replies) <= MAX_REPLIES and all(map(_is_reply, note.replies)) and _is_drawing(note.drawing)
+    texts_sound = _is_text(note.text, MAX_TEXT) and all(_is_text(text) for text in texts)
+    return (
+        texts_sound
+        and len(note.replies) <= MAX_REPLIES
+        and all(map(_is_reply, note.replies))
+        and _is_drawing(note.drawing)
+    )
 
 
 def _is_reply(reply: Reply) -> bool:

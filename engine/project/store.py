@@ -12,7 +12,7 @@ from pathlib import Path
 from engine.errors import EngineError, FormatError
 from engine.formats.base.atomic import replacement, sweep, unwritten
 from engine.formats.base.content import require_file
-from engine.project import held, rows, schema, spares
+from engine.project import open_files, rows, schema, spares
 from engine.project.blobs import Budget
 from engine.project.claim import JOURNALS, Claim, belongs, head_of, is_hot
 from engine.project.database import BESIDE, connect, copied, keep_safe, scrap, sentences, settle
@@ -39,7 +39,7 @@ class Project:
         self._database = own[0] if own else None
         self._claim = own[1] if own else None
         self._spare: Path | None = None
-        self._held = held.hold(path) if self._database is not None else None
+        self._held = open_files.register(path) if self._database is not None else None
 
     @classmethod
     def open(cls, path: Path, *, read_only: bool = False) -> Project:
@@ -136,7 +136,7 @@ class Project:
         self._database = self._claim = None
         if self._spare is not None:
             spares.drop(self._spare)
-        held.let_go(self._held)
+        open_files.release(self._held)
 
     def _writable(self) -> tuple[sqlite3.Connection, Claim]:
         if self._database is None or self._claim is None:

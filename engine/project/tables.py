@@ -1,4 +1,4 @@
-"""Rows of a project file: blobs too large to be held twice, JSON that is checked, rows that must be there."""
+"""Rows of a project file: blobs too large to be in memory twice, checked JSON, required rows."""
 
 from __future__ import annotations
 

@@ -88,13 +88,13 @@ def change_of(inputs: Mapping[str, Any], lane: VisemeLane | None) -> VisemeChang
     if not (isinstance(at, int) and isinstance(count, int) and at >= 0 and count >= 0 and at + count <= len(cues)):
         raise ValueError("the step belongs to another lane")
     added = tuple(_cue(*entry) for entry in inputs["added"])
-    told = inputs["lane"]
-    if told is None:
+    stored_lane = inputs["lane"]
+    if stored_lane is None:
         return VisemeChange(at, cues[at : at + count], added, _head(lane), None)
-    source, offset_s = told["source"], told["offset_s"]
+    source, offset_s = stored_lane["source"], stored_lane["offset_s"]
     if not isinstance(source, str) or not isinstance(offset_s, float | int) or not abs(offset_s) < MAX_TIME_S:
         raise ValueError("the lane is not described")
-    if told["attached"]:
+    if stored_lane["attached"]:
         originals = (*cues[:at], *added, *cues[at + count :])
     elif lane is None or count != len(added):
         raise ValueError("the lane was never attached")
@@ -119,7 +119,7 @@ def _cue(start_s: object, stop_s: object, label: object) -> Cue:
 def _require_order(lane: VisemeLane | None, at: int, count: int) -> None:
     """Check the cues that a step put in place, and those beside them; the others were checked before."""
     cues = lane.cues[max(0, at - 1) : at + count + 1] if lane is not None else ()
-    if any(one.stop_s > other.start_s for one, other in pairwise(cues)):
+    if any(cue.stop_s > following.start_s for cue, following in pairwise(cues)):
         raise ValueError("cues overlap")
 
 

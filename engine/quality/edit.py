@@ -13,7 +13,7 @@ from engine.take import Array, Mask, runs
 
 
 def missed(seen: Seen, low: int, high: int) -> Iterator[Flag]:
-    """Yield frames on which a control is far from what was asked of it."""
+    """Yield frames on which a control misses its target."""
     if seen.asked is None:
         return
     asked, reached = seen.asked[low:high], seen.controls[low:high]

@@ -51,7 +51,7 @@ def _level(seen: Seen, frames: Indices) -> Mask:
 
 
 def _shut_before(seen: Seen) -> list[int]:
-    """Return the frames at which blinks were shut before the edits, and nobody has asked anything of the lids since."""
+    """Return the frames at which blinks were shut before the edits and the lids have no target since."""
     if seen.original_controls is None:
         return []
     before = rounded(np.max([seen.original_controls[:, control] for control in LIDS.values()], axis=0))
@@ -77,9 +77,9 @@ def late(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         for control in LIDS.values()
     ]
     late_by = np.zeros(last - first)
-    for one, other in _paired(*bottoms):
-        if seen.tuning.late_s * seen.fps < abs(other - one) <= seen.tuning.together_s * seen.fps:
-            a, b = min(one, other), max(one, other) + 1
+    for left, right in _paired(*bottoms):
+        if seen.tuning.late_s * seen.fps < abs(right - left) <= seen.tuning.together_s * seen.fps:
+            a, b = min(left, right), max(left, right) + 1
             late_by[a:b] = np.maximum(late_by[a:b], (b - a - 1) / seen.fps)
     late_by = late_by[low - first : high - first]
     for start, stop in runs(late_by > 0):

@@ -22,8 +22,8 @@ _MBP, _FV = NAMES.index("mbp"), NAMES.index("fv")
 def stay_open(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield places where lips should meet and never do: M, B and P, and where they met before the edits."""
     lips = seen.controls[:, LIPS]
-    said, labels = _said(seen, _MBP)
-    for (start, stop), nearest, label in zip(said.tolist(), lowest(lips, said), labels, strict=True):
+    spans, labels = _cues_of(seen, _MBP)
+    for (start, stop), nearest, label in zip(spans.tolist(), lowest(lips, spans), labels, strict=True):
         if nearest > seen.tuning.closed_mm:
             text = f"The lips stay {nearest:.1f} mm apart where {label} is said."
             yield Flag("open", start, stop, weight_of(nearest, seen.tuning.closed_mm, seen.tuning.full_gap_mm), text)
@@ -36,8 +36,10 @@ def stay_open(seen: Seen, low: int, high: int) -> Iterator[Flag]:
 
 def off_teeth(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield each F and V through which the lips stay too far apart for the lower one to touch the teeth."""
-    said, labels = _said(seen, _FV)
-    for (start, stop), nearest, label in zip(said.tolist(), lowest(seen.controls[:, LIPS], said), labels, strict=True):
+    spans, labels = _cues_of(seen, _FV)
+    for (start, stop), nearest, label in zip(
+        spans.tolist(), lowest(seen.controls[:, LIPS], spans), labels, strict=True
+    ):
         if nearest > seen.tuning.teeth_mm:
             text = f"The lips stay {nearest:.1f} mm apart where {label} is said: the lip does not reach the teeth."
             yield Flag("teeth", start, stop, weight_of(nearest, seen.tuning.teeth_mm, seen.tuning.full_teeth_mm), text)
@@ -54,8 +56,8 @@ def close_above_jaw(seen: Seen, low: int, high: int) -> Iterator[Flag]:
         )
 
 
-def _said(seen: Seen, viseme: int) -> tuple[Indices, list[str]]:
-    """Return the frames over which a viseme is said, (n, 2), as far as the take goes, and the labels that say so."""
+def _cues_of(seen: Seen, viseme: int) -> tuple[Indices, list[str]]:
+    """Return the frames of a viseme's cues, (n, 2), within the take, and their labels."""
     lane = seen.visemes
     if lane is None:
         return np.zeros((0, 2), np.int64), []
@@ -68,7 +70,7 @@ def _said(seen: Seen, viseme: int) -> tuple[Indices, list[str]]:
 
 
 def _met(seen: Seen) -> Indices:
-    """Return where the lips met briefly as the take was opened and nobody has asked anything of them since, (n, 2)."""
+    """Return the frames, (n, 2), at which the lips met briefly before the edits and have no target since."""
     if seen.original_controls is None:
         return np.zeros((0, 2), np.int64)
     met = np.array(runs(seen.original_controls[:, LIPS] < TUNING.closed_mm), np.int64).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""What is looked at: a take's curves, what they were before the edits, what is said and what is heard."""
+"""The input of the flags: a take's curves, those before the edits, visemes and sound."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ class Seen:
     controls : (frames, controls), measured on the weights
     fps : frames per second
     lost : (frames,) bool, where the tracker had no face and nobody has filled one in since
-    asked : (frames, controls), NaN where nothing was asked; None where nothing was anywhere
+    asked : (frames, controls) targets, NaN for none; None where there is none anywhere
     original_controls : (frames, controls) before any edit; None without one
-    visemes : what is said when
+    visemes : the cues with their times
     original_weights : (frames, 52) before any edit; None without one
     rotations : (frames, 3) radians, yaw, pitch and roll of the head; None where it was not recorded
     sound : what is heard; None without sound
@@ -102,7 +102,7 @@ def seen_of(
 
     Parameters
     ----------
-    asked : (frames, controls), NaN where nothing was asked
+    asked : (frames, controls) targets, NaN for none
     controls : of the take and of the original, (frames, controls) each, where they have been measured
 
     Raises `EditError` for an original of another length.

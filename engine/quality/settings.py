@@ -51,7 +51,7 @@ class FlagSettings:
 
     def with_count(self, name: str, *, on: bool) -> FlagSettings:
         """Return the same with a kind looked for, or not."""
-        counts = {other: held for other, held in self.counts.items() if other != name}
+        counts = {other: of_kind for other, of_kind in self.counts.items() if other != name}
         return replace(self, counts=counts if BY_NAME[name].on == on else {**counts, name: on})
 
     def with_threshold(self, name: str, value: float) -> FlagSettings:
@@ -66,7 +66,7 @@ class FlagSettings:
         if not (math.isfinite(value) and threshold.lowest <= value <= threshold.highest):
             limits = f"{threshold.lowest:g} to {threshold.highest:g} {threshold.unit}".strip()
             raise EditError(f"{value:g} is no threshold for {name}.", f"It goes from {limits}.")
-        others = {other: held for other, held in self.thresholds.items() if other != name}
+        others = {other: of_kind for other, of_kind in self.thresholds.items() if other != name}
         usual = math.isclose(value, float(getattr(TUNING, threshold.name)))
         return replace(self, thresholds=others if usual else {**others, name: float(value)})
 
@@ -106,13 +106,13 @@ def dismissal_of(flag: Flag, dismissals: Iterable[Dismissal]) -> Dismissal | Non
 
 def parted(flags: Iterable[Flag], dismissals: Iterable[Dismissal]) -> tuple[tuple[Flag, ...], tuple[Flag, ...]]:
     """Return the flags that count, and those that were dismissed."""
-    held: dict[str, list[Dismissal]] = {}
+    of_kind: dict[str, list[Dismissal]] = {}
     for each in dismissals:
-        held.setdefault(each.kind, []).append(each)
+        of_kind.setdefault(each.kind, []).append(each)
     counting: list[Flag] = []
     dismissed: list[Flag] = []
     for flag in flags:
-        (counting if dismissal_of(flag, held.get(flag.kind, ())) is None else dismissed).append(flag)
+        (counting if dismissal_of(flag, of_kind.get(flag.kind, ())) is None else dismissed).append(flag)
     return tuple(counting), tuple(dismissed)
 
 

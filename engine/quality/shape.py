@@ -93,7 +93,7 @@ def swapped(seen: Seen, low: int, high: int) -> Iterator[Flag]:
 def unlike(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames on which the mouth is further from the mean face than any mouth that was recorded, by a factor.
 
-    The distance is that of the learned prior (`engine/likeness.py`); where that is missing, nothing is told.
+    The distance is that of the learned prior (`engine/likeness.py`); where that is missing, nothing is flagged.
     """
     try:
         known = recorded()
@@ -133,7 +133,7 @@ def crossed_mm(weights: Array, name: str) -> Array:
     drawn = limited(weights)
     # einsum sums a row alike wherever it stands; a matrix product does not, and flags must not depend on that
     return np.asarray(
-        -np.min([np.einsum("fs,s->f", drawn, one) + gap for gap, one in zip(rest, basis, strict=True)], 0)
+        -np.min([np.einsum("fs,s->f", drawn, row) + gap for gap, row in zip(rest, basis, strict=True)], 0)
     )
 
 

@@ -90,8 +90,8 @@ def leaps(
 def spikes(seen: Seen, low: int, high: int) -> Iterator[Flag]:
     """Yield frames on which a shape leaps and comes back."""
     tuning = seen.tuning
-    told = partial(leaps, least=tuning.leap, quiet=tuning.leap_quiet, returns=tuning.returns)
-    leap = strengths(seen, low, high, reach=2, verdict=told)
+    verdict_of = partial(leaps, least=tuning.leap, quiet=tuning.leap_quiet, returns=tuning.returns)
+    leap = strengths(seen, low, high, reach=2, verdict=verdict_of)
     for start, stop in runs(leap > 0):
         furthest = float(leap[start:stop].max())
         text = f"A shape leaps by {furthest:.2f} for a single frame and comes back."

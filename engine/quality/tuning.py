@@ -25,7 +25,7 @@ class Tuning:
     least_freeze_s: float = 0.15
     full_freeze_s: float = 0.5
     full_loss_s: float = 1.0
-    # A shape jitters where the deviation of its noise, told by fourth differences, is above `jitter` on a share of the
+    # A shape jitters where the deviation of its noise, measured by fourth differences, is above `jitter` on a share of the
     # frames of a stretch (one spike is no jitter), and is a large share of its first differences (fast speech is less).
     jitter: float = 0.015  # weight [.008 .. .03]; false 4 -> 0, 40 of 40
     jitter_share: float = 0.6  # of the frames [.4 .. .7]; false 5 -> 0, 40 of 40
@@ -93,7 +93,7 @@ class Tuning:
     full_short_s: float = 2.0
     out_of_step_s: float = 0.08  # seconds between lips and loudness [.06 .. .15]; 40 of 40, at .15 36; no false one
     step_range_s: float = 0.6  # seconds; the largest offset that is looked for
-    step_correlation: float = 0.25  # at the best offset; below it nothing is told [.15 .. .35]
+    step_correlation: float = 0.25  # at the best offset; below it nothing is reported [.15 .. .35]
     step_gain: float = 0.05  # by which the best offset correlates better than none [.02 .. .1]
     step_least_s: float = 10.0  # seconds that lips and sound have in common
     full_out_of_step_s: float = 0.4

@@ -10,16 +10,21 @@ import torch
 from torch import Tensor
 from torch.nn.functional import pad
 
-from engine.controls import CONTROLS
+from engine.controls import ALL_CONTROLS, ALL_INDEX, CONTROLS
+from engine.extended import bundled_face
 from engine.models.checkpoint import MODELS, load_model, rebuilt
 from engine.regress import contacts
 from engine.regress.areas import AREAS, EXTENDED_AREAS, Area
 from engine.regress.network import ALIGNMENT, REACH, AreaNetwork, from_config
 from engine.take import SHAPES, Array
 
+_LOWER, _UPPER, _EYELIDS = AREAS
+_BROWS, _, _GAZE = EXTENDED_AREAS
+_ORDER = [_GAZE, _UPPER, _BROWS, _EYELIDS, _LOWER]
+
 
 class Regressor:
-    """Controls to weights with the networks of each area; those of the extended controls run only where these are given.
+    """Controls to weights with the networks of each area.
 
     Parameters
     ----------
@@ -30,6 +35,8 @@ class Regressor:
         self.networks = networks
         for network in networks.values():
             network.eval()
+            if network.constraint is not None:
+                network.constraint.double()  # what a solve makes of rounding shows, and is not alike in a take and a part
 
     def infer(
         self,
@@ -40,12 +47,13 @@ class Regressor:
         kept: Array | None = None,
         original: Array | None = None,
     ) -> Array:
-        """Return weights, (frames, 52) float64 in 0..1, of controls, (frames, 8), or 14 with the extended ones.
+        """Return weights, (frames, 52) float64 in 0..1, of controls, (frames, 8), or 16 with the extended ones.
 
-        `full=False` stops at the regressor and is not clamped; `land=False` leaves out what the full system does for
-        contacts. Shapes that no given control speaks of, gaze without its controls, are as in `kept`, (frames, 52), or
-        zero without it: where the eyes look moves the lids too. What the curves of an `original`, (frames, 8 or 14), do
-        themselves is neither tempered nor taken for a mistake; without one, what people were recorded to do.
+        `full=False` stops at the regressor; `land=False` leaves out what the full system does for contacts once the
+        networks have brought their faces onto the controls. Shapes that no given control speaks of, gaze without its
+        controls, are as in `kept`, (frames, 52), or zero without it: where the eyes look moves the lids too. What the
+        curves of an `original`, (frames, 8 or 16), do themselves is neither tempered nor taken for a mistake; without one,
+        what people were recorded to do.
         """
         return self.infer_range(controls, 0, len(controls), full=full, land=land, kept=kept, original=original)
 
@@ -65,12 +73,12 @@ class Regressor:
         last = min(len(controls), -(-(stop + REACH) // ALIGNMENT) * ALIGNMENT)
         weights = np.zeros((stop - start, len(SHAPES))) if kept is None else np.array(kept[start:stop])
         rows = slice(start - first, stop - first)
-        seen = (controls[first:last], None if original is None else original[first:last])
-        trust = self._fill(weights, *seen, rows, full=full)
-        if not full:
-            return weights
+        near = slice(first, last)
+        held = None if kept is None else kept[near]
+        known = None if original is None else _known(original[near], held)
+        trust = self._fill(weights, _known(controls[near], held), known, rows, full=full)
         made = np.clip(weights, 0.0, 1.0)
-        if not land:
+        if not (full and land):
             return made
         return contacts.met(made, controls[start:stop], trust, None if original is None else original[start:stop])
 
@@ -83,32 +91,41 @@ class Regressor:
         *,
         full: bool,
     ) -> Array:
-        """Put what the networks say of some rows of controls into weights, (rows, 52).
+        """Put what the networks say of some rows of controls, (frames, 16), into weights, (rows, 52).
 
         Returns how far each contact is to be trusted, (rows, 3).
         """
         trust = np.zeros((len(weights), len(contacts.MEETING)))
-        for area in self._areas(extended=controls.shape[1] > len(CONTROLS)):
-            asked = controls[:, area.control_columns]
-            known = None if original is None else original[:, area.control_columns]
-            said, trusted = self._ask(area.name, asked, known, rows, full=full)
-            weights[:, area.shape_columns] = said
-            trust[:, contacts.of_area(area.name)] = trusted
+        for area in self._areas(controls):
+            network, given = self.networks[area.name], len(area.controls)
+            with torch.inference_mode():
+                curves, share = _held(controls[:, area.every_column]), torch.zeros(1, 1, len(controls))
+                known = None if original is None else _held(original[:, area.every_column])
+                if full:
+                    tempered, share = network.tempered(curves[:, :given], None if known is None else known[:, :given])
+                    curves = torch.cat([tempered, curves[:, given:]], dim=1)
+                made = network(curves, full=full, rows=rows, original=known)
+                still = torch.from_numpy(weights.T.astype(np.float32))[None]
+                near = None if known is None else known[..., rows]
+                made = network.constrained(made, curves[..., rows], still, full=full, original=near)
+            weights[:, area.shape_columns] = made[0].numpy().T
+            trust[:, contacts.of_area(area.name)] = share[0, :, rows].numpy().T
         return trust
 
-    def _ask(self, area: str, asked: Array, original: Array | None, rows: slice, *, full: bool) -> tuple[Array, Array]:
-        """Return an area's weights, (rows, shapes), of its curves, (frames, controls), and the trust in its contacts."""
-        network = self.networks[area]
-        with torch.inference_mode():
-            curves = _held(asked)
-            share = torch.zeros(1, 1, len(asked))
-            if full:
-                curves, share = network.tempered(curves, None if original is None else _held(original))
-            said = network(curves, full=full, rows=rows)[0].numpy().T
-        return said, share[0, :, rows].numpy().T
+    def _areas(self, controls: Array) -> list[Area]:
+        """Return the areas in the order in which each is brought onto its controls: the upper lip hangs on the nose."""
+        known = [area for area in (_GAZE, _BROWS) if not np.isnan(controls[:, area.control_columns]).any()]
+        order = sorted((*AREAS, *known), key=_ORDER.index)
+        return [area for area in order if area.name in self.networks]
 
-    def _areas(self, *, extended: bool) -> list[Area]:
-        return [area for area in AREAS + EXTENDED_AREAS * extended if area.name in self.networks]
+
+def _known(controls: Array, kept: Array | None) -> Array:
+    """Return all control curves, (frames, 16), NaN where nothing is known: where the eyes look is, of what is kept."""
+    curves = np.full((len(controls), len(ALL_CONTROLS)), np.nan)
+    curves[:, : controls.shape[1]] = controls
+    if kept is not None and controls.shape[1] == len(CONTROLS):
+        curves[:, ALL_INDEX["gaze_vertical"]] = bundled_face().measure(kept)[:, ALL_INDEX["gaze_vertical"]]
+    return curves
 
 
 def _held(curves: Array) -> Tensor:

@@ -3,116 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import torch
 from torch import Tensor, nn
-from torch.nn.functional import avg_pool1d, conv1d, elu, max_pool1d, pad
+from torch.nn.functional import avg_pool1d, max_pool1d, pad
+
+from engine.regress.areas import Area
+from engine.regress.constraint import Constraint
+from engine.regress.unet import UNet, UNetConfig
 
 LOOK = 24  # frames on either side that are scaled with an excess, and over which the scale comes and goes
 UNET_REACH = 24  # frames: one feels 2 + 2 * 2 + 4 * 2 + 2 * 2 + 2 through its convolutions and up to 3 through pooling
 REACH = 2 * UNET_REACH + 2 * LOOK + 4  # two U-Nets on what looks 2 * LOOK around, and 4 for median and velocity
-SHORT = 512  # batch * frames, below which a matrix product is the faster convolution; at 1000 it takes twice as long
 ALIGNMENT = 4  # frames; two poolings by two, so windows must begin on multiples of this to equal the whole take
 BEYOND = 0.005  # share of recorded frames that the full system holds to be further out than a face goes
 ROOM = 0.3  # of the usual bound, by which an edit may go further than the take, wherever that is
-
-
-@dataclass(frozen=True)
-class UNetConfig:
-    """Widths of the three resolutions, and what goes in and comes out."""
-
-    inputs: int
-    outputs: int
-    widths: tuple[int, int, int] = (32, 64, 128)
-    waves: int = 0  # random ones, by which the linear part bends (Rahimi and Recht 2007)
-
-
-def _block(inputs: int, outputs: int) -> nn.Sequential:
-    return nn.Sequential(
-        nn.Conv1d(inputs, outputs, 3, padding=1), nn.ELU(), nn.Conv1d(outputs, outputs, 3, padding=1), nn.ELU()
-    )
-
-
-def _twice(x: Tensor, kernels: Sequence[Tensor]) -> Tensor:
-    """Run a block."""
-    first, bias, second, offset = kernels
-    x = elu(_convolved(x, first, bias), inplace=True)
-    return elu(_convolved(x, second, offset), inplace=True)
-
-
-def _convolved(x: Tensor, kernel: Tensor, bias: Tensor) -> Tensor:
-    """Return what a convolution of width 1 or 3 makes of curves, (batch, n, frames), with zeros beyond their ends.
-
-    Of few frames as one matrix product: torch's own convolution then takes twice as long to set itself up as to work.
-    """
-    batch, count, frames = x.shape
-    width = kernel.shape[2]
-    if batch * frames > SHORT:
-        return conv1d(x, kernel, bias, padding=width // 2)
-    if width > 1:
-        wide = pad(x, (1, 1))
-        x = torch.stack([wide[..., :-2], x, wide[..., 2:]], dim=2).flatten(1, 2)
-    return torch.baddbmm(bias[:, None], kernel.reshape(1, -1, count * width).expand(batch, -1, -1), x)
-
-
-def _grown(x: Tensor) -> Tensor:
-    """Return every frame twice."""
-    return x.unsqueeze(3).expand(-1, -1, -1, 2).flatten(2)
-
-
-class UNet(nn.Module):
-    """A linear map frame by frame plus a 1-D U-Net over time: (batch, inputs, frames) -> (batch, outputs, frames).
-
-    The paper's batch normalisation is left out: under salt-and-pepper its statistics drift and ruin closures. Inputs
-    are standardised by constants instead, and the linear part starts as ridge regression.
-    """
-
-    mean: Tensor
-    scale: Tensor
-    turns: Tensor
-    phases: Tensor
-
-    def __init__(self, config: UNetConfig) -> None:
-        super().__init__()
-        narrow, middle, wide = config.widths
-        self.config = config
-        self.linear = nn.Conv1d(config.inputs + config.waves, config.outputs, 1)
-        if config.waves:
-            self.register_buffer("turns", torch.randn(config.waves, config.inputs, 1) / math.sqrt(config.inputs))
-            self.register_buffer("phases", 2 * math.pi * torch.rand(config.waves))
-        self.down1, self.down2 = _block(config.inputs, narrow), _block(narrow, middle)
-        self.bottom = _block(middle, wide)
-        self.up2, self.up1 = _block(wide + middle, middle), _block(middle + narrow, narrow)
-        self.last = nn.Conv1d(narrow, config.outputs, 1)
-        nn.init.zeros_(self.last.weight)
-        nn.init.zeros_(self.last.bias)  # type: ignore[arg-type]
-        # Run by hand: called as modules, networks this small spend a quarter of a drag step on the way to their kernels.
-        blocks = (self.down1, self.down2, self.bottom, self.up2, self.up1)
-        self._kernels = [list(block.parameters()) for block in blocks]
-        self._pointwise = [list(layer.parameters()) for layer in (self.linear, self.last)]
-        self.register_buffer("mean", torch.zeros(1, config.inputs, 1))
-        self.register_buffer("scale", torch.ones(1, config.inputs, 1))
-
-    def forward(self, curves: Tensor) -> Tensor:
-        """Map curves; frames must be a multiple of `ALIGNMENT`."""
-        x = (curves - self.mean) / self.scale
-        down1, down2, bottom, up2, up1 = self._kernels
-        fine = _twice(x, down1)  # (batch, narrow, frames)
-        half = _twice(max_pool1d(fine, 2), down2)  # (batch, middle, frames / 2)
-        deep = _twice(max_pool1d(half, 2), bottom)  # (batch, wide, frames / 4)
-        half = _twice(torch.cat([_grown(deep), half], dim=1), up2)
-        fine = _twice(torch.cat([_grown(half), fine], dim=1), up1)
-        linear, last = self._pointwise
-        return _convolved(self.bent(x), *linear) + _convolved(fine, *last)
-
-    def bent(self, x: Tensor) -> Tensor:
-        """Return what the linear part sees of standardised inputs, (batch, inputs, frames): these and their waves."""
-        if not self.config.waves:
-            return x
-        return torch.cat([x, math.sqrt(2.0) * conv1d(x, self.turns, self.phases).cos()], dim=1)
 
 
 class AreaNetwork(nn.Module):
@@ -121,6 +29,11 @@ class AreaNetwork(nn.Module):
     The full system takes a control no further than the recorded faces went (`low`, `high`), and hands weights
     in 0..1 to the autoencoder: what nobody's face can do is bounded before it is judged. In use, controls are
     `tempered` first; in training they are not, so that the autoencoder learns to mend more than it will meet.
+
+    Parameters
+    ----------
+    held : controls that the weights are brought onto, by name, and their places among the inputs
+    shapes : columns of the weights that the network makes; needed where controls are held
     """
 
     low: Tensor
@@ -130,20 +43,33 @@ class AreaNetwork(nn.Module):
     bound: Tensor
     usual: Tensor
 
-    def __init__(self, regressor: UNetConfig, autoencoder: UNetConfig) -> None:
+    def __init__(
+        self,
+        regressor: UNetConfig,
+        autoencoder: UNetConfig,
+        *,
+        held: Mapping[str, int] | None = None,
+        shapes: Sequence[int] = (),
+    ) -> None:
         super().__init__()
         self.regressor, self.autoencoder = UNet(regressor), UNet(autoencoder)
-        self.register_buffer("low", torch.full((1, regressor.inputs, 1), -torch.inf))
-        self.register_buffer("high", torch.full((1, regressor.inputs, 1), torch.inf))
+        self._held, self._shapes = dict(held or {}), list(shapes)
+        self.constraint = Constraint(list(self._held), self._shapes) if self._held else None
+        every = regressor.inputs + regressor.further
+        self.register_buffer("low", torch.full((1, every, 1), -torch.inf))
+        self.register_buffer("high", torch.full((1, every, 1), torch.inf))
         self.register_buffer("centre", torch.zeros(1, regressor.inputs, 1))
         self.register_buffer("whiten", torch.eye(2 * regressor.inputs))
         self.register_buffer("bound", torch.tensor(torch.inf))
         self.register_buffer("usual", torch.tensor(torch.inf))
 
-    def forward(self, controls: Tensor, *, full: bool = True, rows: slice | None = None) -> Tensor:
+    def forward(
+        self, controls: Tensor, *, full: bool = True, rows: slice | None = None, original: Tensor | None = None
+    ) -> Tensor:
         """Return weights, (batch, shapes, frames), of controls, (batch, controls, frames) in mm.
 
-        Of some `rows` alone where they are given; neither network then runs over more than these can feel.
+        Of some `rows` alone where they are given; neither network then runs over more than these can feel. They are not
+        yet `constrained`. What the curves of an `original` take did themselves, like `controls`, is not out of bounds.
         """
         frames = controls.shape[-1]
         rows = rows or slice(0, frames)
@@ -152,9 +78,40 @@ class AreaNetwork(nn.Module):
             weights: Tensor = self.regressor(controls[..., near])
             return weights[..., _within(near, rows)]
         far = _around(near, UNET_REACH, frames)
-        bounded = torch.minimum(torch.maximum(controls[..., far], self.low), self.high)
+        bounded = self._bounded(controls[..., far], None if original is None else original[..., far])
         cleaned: Tensor = self.autoencoder(self.regressor(bounded)[..., _within(far, near)].clamp(0.0, 1.0))
         return cleaned[..., _within(near, rows)]
+
+    def constrained(
+        self,
+        weights: Tensor,
+        controls: Tensor,
+        still: Tensor | None = None,
+        *,
+        full: bool = True,
+        original: Tensor | None = None,
+    ) -> Tensor:
+        """Return weights, (batch, shapes, frames), brought onto the controls, (batch, controls, frames), that area holds.
+
+        `still`, (batch, 52, frames), is the face whose other shapes stay as they are, zero without it. The full system
+        holds a control no further out than the recorded faces or the `original` went, and the less, the more the weights
+        miss it.
+        """
+        if self.constraint is None:
+            return weights
+        asked = self._bounded(controls, original) if full else controls
+        missing = self.low.shape[1] - controls.shape[1]
+        asked = pad(asked, (0, 0, 0, missing), value=torch.nan)[:, list(self._held.values())]
+        exact = self.constraint.covariance.dtype
+        still = None if still is None else still.to(exact)
+        made: Tensor = self.constraint(weights.to(exact), asked.to(exact), still, doubting=full)
+        return made.to(weights.dtype)
+
+    def _bounded(self, controls: Tensor, original: Tensor | None) -> Tensor:
+        low, high = (bound[:, : controls.shape[1]] for bound in (self.low, self.high))
+        if original is not None:
+            low, high = torch.fmin(low, original), torch.fmax(high, original)
+        return torch.minimum(torch.maximum(controls, low), high)
 
     def tempered(self, controls: Tensor, original: Tensor | None = None) -> tuple[Tensor, Tensor]:
         """Return controls, (batch, controls, frames) in mm, drawn back to where faces go from where they outdo these.
@@ -180,9 +137,13 @@ class AreaNetwork(nn.Module):
 
     @torch.no_grad()
     def learn_bounds(self, controls: Tensor, unusual: float) -> None:
-        """Take the bounds from recorded controls, (windows, controls, frames) in mm, a share of them `unusual`."""
+        """Take the bounds from recorded controls, (windows, controls, frames) in mm, a share of them `unusual`.
+
+        Further controls are bounded each for itself.
+        """
         self.low.copy_(controls.amin(dim=(0, 2))[None, :, None])
         self.high.copy_(controls.amax(dim=(0, 2))[None, :, None])
+        controls = controls[:, : self.centre.shape[1]]
         self.centre.copy_(controls.mean(dim=(0, 2))[None, :, None])
         moving = _with_velocity(controls - self.centre).double().permute(0, 2, 1).flatten(0, 1)
         covariance = moving.T @ moving / len(moving)
@@ -195,7 +156,8 @@ class AreaNetwork(nn.Module):
 
     def config(self) -> dict[str, Any]:
         """Return what rebuilds this module."""
-        return {"regressor": asdict(self.regressor.config), "autoencoder": asdict(self.autoencoder.config)}
+        parts = {"regressor": asdict(self.regressor.config), "autoencoder": asdict(self.autoencoder.config)}
+        return parts | {"held": self._held, "shapes": self._shapes}
 
 
 def _around(rows: slice, reach: int, frames: int) -> slice:
@@ -237,9 +199,17 @@ def _median(curves: Tensor) -> Tensor:
     return torch.maximum(torch.minimum(low, high), torch.minimum(torch.maximum(low, high), three))
 
 
+def network_of(area: Area, *, widths: tuple[int, int, int], waves: int = 0) -> AreaNetwork:
+    """Build the untrained module of an area."""
+    outputs = len(area.shape_columns)
+    regressor = UNetConfig(len(area.controls), outputs, widths, waves, len(area.further))
+    autoencoder = UNetConfig(outputs, outputs, widths)
+    return AreaNetwork(regressor, autoencoder, held=area.held_inputs, shapes=area.shape_columns.tolist())
+
+
 def from_config(config: dict[str, Any]) -> AreaNetwork:
     """Build a module from what `AreaNetwork.config` returned."""
     parts = [
         UNetConfig(**{**config[key], "widths": tuple(config[key]["widths"])}) for key in ("regressor", "autoencoder")
     ]
-    return AreaNetwork(*parts)
+    return AreaNetwork(*parts, held=config["held"], shapes=config["shapes"])

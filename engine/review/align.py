@@ -38,7 +38,7 @@ class Alignment:
     Attributes
     ----------
     offset_s : seconds; time t of the second take is time t + offset_s of the first
-    by : what told it
+    by : source of the offset
     correlation : of the motion of both where they overlap, -1..1; of one performance it is near 1
     """
 
@@ -77,11 +77,11 @@ def align(before: Take, after: Take, *, offset_s: float | None = None) -> Alignm
         return Alignment(offset_s, "offset", _correlation_at(before, after, offset_s))
     same_clock = before.fps == after.fps and len(before) == len(after)
     if before.start_s > 0 and after.start_s > 0:
-        told = after.start_s - before.start_s
-        if _overlap_s(before, after, told) >= _needed_s(before, after):
-            correlation = _correlation_at(before, after, told)
-            if correlation >= Tuning.alike or (same_clock and abs(told) * after.fps < 0.5):
-                return Alignment(told, "timecode", correlation)
+        by_timecode_s = after.start_s - before.start_s
+        if _overlap_s(before, after, by_timecode_s) >= _needed_s(before, after):
+            correlation = _correlation_at(before, after, by_timecode_s)
+            if correlation >= Tuning.alike or (same_clock and abs(by_timecode_s) * after.fps < 0.5):
+                return Alignment(by_timecode_s, "timecode", correlation)
     together = _correlation_at(before, after, 0.0)
     if same_clock and together >= Tuning.alike:
         return Alignment(0.0, "start", together)

@@ -1,4 +1,4 @@
-"""A file as a reviewer sees it: the take, what it was made from, what was noted, and the sound that goes with it."""
+"""The content of a file for a reviewer: the take, its original, notes, and sound."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Opened:
     ----------
     path : of the file
     take : with the edits in effect
-    original : what it was made from, where the file tells
-    asked : (frames, controls) what was asked of the controls, NaN where nothing was; None where nothing was anywhere
-    visemes : what is said when, where the file tells
+    original : the take before the edits, where the file has it
+    asked : (frames, controls) control targets, NaN for none; None where there is none anywhere
+    visemes : the viseme lane, where the file has it
     marks : what people put beside it
     edits : those that changed frames, in order
     sound : what is heard; None where nobody listened
@@ -47,7 +47,7 @@ class Opened:
 
     @cached_property
     def seen(self) -> Seen:
-        """What is looked at for flags."""
+        """The input of the flags."""
         return seen_of(self.take, self.original, self.asked, self.visemes, sound=self.sound)
 
     def flags(self, also: Iterable[str] = ()) -> tuple[Flag, ...]:
@@ -58,7 +58,7 @@ class Opened:
         return flags_of(self.seen, settings)
 
     def require_original(self) -> Take:
-        """Return what the take was made from; raises `EditError` where the file does not tell."""
+        """Return the take before the edits; raises `EditError` where the file does not have it."""
         if self.original is None:
             raise EditError(
                 f"{self.path.name} does not hold what it was made from.",

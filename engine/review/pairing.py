@@ -1,4 +1,4 @@
-"""Makes two takes one that can be opened: the first on the second one's clock, and one edit between them."""
+"""Joins two takes into one that can be opened: the first on the second one's clock, and one edit between them."""
 
 from __future__ import annotations
 
@@ -56,9 +56,9 @@ class Pair:
 
     @property
     def inputs(self) -> dict[str, Any]:
-        """What a project remembers of how the two were brought together."""
-        told = self.alignment
-        return {"offset_s": told.offset_s, "by": told.by, "correlation": told.correlation, "name": self.raw.name}
+        """The alignment as a project stores it."""
+        found = self.alignment
+        return {"offset_s": found.offset_s, "by": found.by, "correlation": found.correlation, "name": self.raw.name}
 
 
 def pair(before: Take, after: Take, *, offset_s: float | None = None) -> Pair:
@@ -75,7 +75,7 @@ def pair(before: Take, after: Take, *, offset_s: float | None = None) -> Pair:
 def on_its_clock(before: Take, after: Take, offset_s: float) -> tuple[Array, Mask, int]:
     """Return a take at the frames of another, (frames, 52), which of them are lost, and how many it has no frame for.
 
-    Where it has none, the other one's rows stand: nothing is told to differ that was never there. Raises `EditError`
+    Where it has none, the other one's rows stand: frames that were never recorded do not count as different. Raises `EditError`
     where the two have no frame in common.
     """
     weights, common = on_clock_of(after, before, offset_s)
@@ -99,7 +99,7 @@ def align_edit(title: str, weights: Array, lost: Mask, inputs: Mapping[str, Any]
 
 
 def paired_by(edits: Iterable[Edit]) -> Mapping[str, Any] | None:
-    """Return how two takes were brought together by the edits in effect; None where there is no second take."""
+    """Return the stored alignment of two takes by the edits in effect; None where there is no second take."""
     found = None
     for edit in edits:
         if edit.kind == COMPARE and isinstance(edit.inputs.get("offset_s"), float | int):
@@ -109,12 +109,12 @@ def paired_by(edits: Iterable[Edit]) -> Mapping[str, Any] | None:
     return found
 
 
-def alignment_of(told: Mapping[str, Any]) -> Alignment:
-    """Return an alignment from what a project remembers of it; what it does not say is taken as set by hand."""
-    by = told.get("by")
-    correlation = told.get("correlation")
+def alignment_of(stored: Mapping[str, Any]) -> Alignment:
+    """Return an alignment from its stored form; what is missing is taken as set by hand."""
+    by = stored.get("by")
+    correlation = stored.get("correlation")
     return Alignment(
-        float(told["offset_s"]),
+        float(stored["offset_s"]),
         by if by in ("timecode", "correlation", "start") else "offset",
         float(correlation) if isinstance(correlation, float | int) else 0.0,
     )
@@ -131,9 +131,9 @@ def contents_of(before: Path, after: Path, *, beside: Path, offset_s: float | No
     return Contents(found.before, (compare_edit(found, inputs),), 1)
 
 
-def found_again(told: Mapping[str, Any], project: Path) -> Path | None:
-    """Return where the take before is that a project of a pair was made from; None where it is not there any more."""
-    name = told.get("before")
+def found_again(stored: Mapping[str, Any], project: Path) -> Path | None:
+    """Return the path of the first take of a pair's project; None where the file is gone."""
+    name = stored.get("before")
     path = (project.parent / name) if isinstance(name, str) and name else None
     return path if path is not None and path.is_file() else None
 

@@ -79,10 +79,10 @@ def begun(entry: Entry) -> Path:
     another take. Raises `EngineError` where one cannot be read, they have no frame in common, or nothing can be written.
     """
     old = _kept(entry)
-    told = paired_by(old.edits[: old.position]) if old is not None else None
-    if old is not None and not _changed(entry, told):
+    paired = paired_by(old.edits[: old.position]) if old is not None else None
+    if old is not None and not _changed(entry, paired):
         return entry.review
-    by_hand = alignment_of(told).offset_s if told is not None and told.get("by") == "offset" else None
+    by_hand = alignment_of(paired).offset_s if paired is not None and paired.get("by") == "offset" else None
     contents = contents_of(entry.before, entry.after, beside=entry.review, offset_s=by_hand)
     if old is not None:
         contents = replace(contents, marks=_carried(old.marks, len(contents.original)))
@@ -107,9 +107,9 @@ def _kept(entry: Entry) -> Contents | None:
         opened.close()
 
 
-def _changed(entry: Entry, told: Any) -> bool:
+def _changed(entry: Entry, paired: Any) -> bool:
     """Return whether one of the two takes is another than when the review was begun; one that is gone is not."""
-    hashes = told.get("sha256") if told is not None else None
+    hashes = paired.get("sha256") if paired is not None else None
     if not isinstance(hashes, list) or len(hashes) != 2:
         return False
     try:

@@ -38,7 +38,7 @@ DrawNote = Callable[[Note], bytes]  # a PNG of the face with what was drawn on i
 
 @dataclass(frozen=True, eq=False)
 class Review:
-    """What a report tells.
+    """The content of a report.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ class _Remark:
 
 @dataclass(frozen=True)
 class Pictures:
-    """What draws the pictures of a report, each of which may be slow.
+    """Draws the pictures of a report, each of which may be slow.
 
     Attributes
     ----------
@@ -199,7 +199,7 @@ def _drawn(review: Review, pictures: Pictures | None) -> tuple[list[_Row], list[
 
 
 def moment(time: str) -> str:
-    """Return when something was said as people read it; a time that is none as it stands."""
+    """Return a note's time as people read it; text that is no time as it is."""
     try:
         return datetime.fromisoformat(time).strftime("%d %b %Y, %H:%M")
     except ValueError:

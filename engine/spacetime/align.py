@@ -1,4 +1,4 @@
-"""Bringing two faces together: head motion taken out by Procrustes, proportions matched by an RBF (SLS12 section 3)."""
+"""Alignment of two faces: head motion removed by Procrustes, proportions matched by an RBF (SLS12 section 3)."""
 
 from __future__ import annotations
 
@@ -12,14 +12,23 @@ from engine.errors import EditError
 from engine.take import Array, Mask
 from engine.words import counted
 
-FLAT = 1e-6  # extent across, relative to along, below which points lie in one plane or on one line
-SAME = 1e-6  # distance, relative to the whole extent, below which two markers are one
-STILL_ROUNDS = 3
+
+@dataclass(frozen=True)
+class Tuning:
+    """Tolerances of the alignment; ranges tried were not recorded."""
+
+    flat: float = 1e-6  # extent across, relative to along, below which points lie in a plane or on a line
+    same: float = 1e-6  # distance, relative to the whole extent, below which two markers coincide
+    rounds: int = 3  # of reweighting in `stillest`
+    least_variance: float = 0.01  # share of the median variance added to each marker's
+
+
+TUNING = Tuning()
 
 
 @dataclass(frozen=True, eq=False)
 class HeadMotion:
-    """Where the head is in each frame: ``seen = still @ rotation' + translation``.
+    """The pose of the head in each frame: ``seen = still @ rotation' + translation``.
 
     Attributes
     ----------
@@ -43,12 +52,12 @@ class HeadMotion:
         return HeadMotion(self.rotations[start:stop], self.translations[start:stop])
 
     def seen_along(self, turn: Array, *, scale: float = 1.0, shift: Array | None = None) -> HeadMotion:
-        """Return the same motion of a head that was laid elsewhere: ``laid = scale * still @ turn + shift``.
+        """Return the same motion of a head in another coordinate system: ``placed = scale * still @ turn + shift``.
 
         Parameters
         ----------
         turn : (3, 3) rotation, acting on rows
-        scale : of the laid head
+        scale : of the placed head
         shift : (3,) mm; none where only rotations matter
         """
         rotations = turn.T @ self.rotations @ turn
@@ -59,7 +68,7 @@ class HeadMotion:
         """Return head yaw, pitch and roll as Live Link Face has them, (frames, 3) radians.
 
         Turns of the head about its own up, right and front in this order: yaw is positive to the character's right, pitch
-        downwards, roll towards the left shoulder. (The sign is told by its eye columns, which go with eyeLookIn and
+        downwards, roll towards the left shoulder. (The sign follows from its eye columns, which go with eyeLookIn and
         eyeLookOut; Unreal's ARKit plug-in treats head and eyes alike.)
         """
         r = self.rotations
@@ -68,13 +77,13 @@ class HeadMotion:
 
 
 def procrustes(positions: Array, neutral: Array, weights: Array | None = None) -> HeadMotion:
-    """Return the rigid motion, without reflection, that best carries the neutral face onto each frame.
+    """Return the rigid motion, without reflection, of the neutral face that best fits each frame (Kabsch).
 
     Parameters
     ----------
     positions : (frames, n, 3) mm; NaN where a marker is missing
     neutral : (n, 3) mm
-    weights : (n,), how far each marker is bone rather than skin; None for all alike
+    weights : (n,), of the markers, larger for bone than for skin; None for equal ones
 
     Raises
     ------
@@ -98,7 +107,7 @@ def procrustes(positions: Array, neutral: Array, weights: Array | None = None) -
 
 
 def _require_spread(sizes: Array, seen: Mask) -> None:
-    poor = (sizes[:, 1] <= FLAT**2 * np.maximum(sizes[:, 0], 1e-300)) | (seen.sum(axis=1) < 3)
+    poor = (sizes[:, 1] <= TUNING.flat**2 * np.maximum(sizes[:, 0], 1e-300)) | (seen.sum(axis=1) < 3)
     if poor.any():
         frame = int(np.flatnonzero(poor)[0])
         raise EditError(
@@ -110,25 +119,24 @@ def _require_spread(sizes: Array, seen: Mask) -> None:
 
 
 def stillest(positions: Array, neutral: Array) -> HeadMotion:
-    """Return the head motion found with the markers that move least on the face counting most.
+    """Return the head motion by iteratively reweighted Procrustes, with weights of one over each marker's variance.
 
-    Jaw and brows move with the performance, so their share of the fit shrinks with the variance they show once the
-    head is still; a few rounds settle it. Shapes and errors as `procrustes`.
+    Jaw and brows move with the performance and get small weights; a few rounds converge. Shapes and errors as `procrustes`.
     """
     weights = np.ones(len(neutral))
     motion = procrustes(positions, neutral)
-    for _ in range(STILL_ROUNDS):
+    for _ in range(TUNING.rounds):
         away = ((motion.remove(positions) - neutral) ** 2).sum(axis=2)
         variance = np.nanmean(np.where(np.isfinite(away).any(axis=0), away, 0.0), axis=0)
-        weights = 1 / (variance + 0.01 * float(np.median(variance)) + 1e-12)
+        weights = 1 / (variance + TUNING.least_variance * float(np.median(variance)) + 1e-12)
         motion = procrustes(positions, neutral, weights / weights.max())
     return motion
 
 
 class Warp:
-    """A smooth map of space that carries one set of points exactly onto another: ``sum w |x - c| + A x + b``.
+    """Maps one set of points exactly onto another by radial basis functions: ``sum w |x - c| + A x + b``.
 
-    Minimises bending; exact everywhere where the two sets are related by an affine map (SLS12 section 3.2).
+    Minimises the bending energy; exact everywhere where the two sets are related by an affine map (SLS12 section 3.2).
 
     Parameters
     ----------
@@ -170,12 +178,12 @@ def check_points(points: Array, names: Sequence[str]) -> None:
     gaps = squareform(pdist(points))
     np.fill_diagonal(gaps, np.inf)
     first, second = divmod(int(gaps.argmin()), len(points))
-    if gaps[first, second] <= SAME * max(float(extents[0]), 1e-300):
+    if gaps[first, second] <= TUNING.same * max(float(extents[0]), 1e-300):
         raise EditError(
             f"The markers {names[first]} and {names[second]} are at the same place.", "Remove one of the two."
         )
     for dimension, shape in ((1, "on one line"), (2, "in one plane")):
-        if extents[dimension] <= FLAT * extents[0]:
+        if extents[dimension] <= TUNING.flat * extents[0]:
             raise EditError(
                 f"All markers ({_few(names)}) lie {shape}.",
                 "Add markers at other depths, such as the nose or the ears.",

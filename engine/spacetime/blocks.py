@@ -1,8 +1,9 @@
-"""The block path: Cholesky of a symmetric block-tridiagonal matrix, O(f m^3), frame by frame."""
+"""Block Cholesky factorisation of a symmetric block-tridiagonal matrix, O(f m^3), frame by frame."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotri
@@ -11,15 +12,24 @@ from engine.errors import EditError
 from engine.take import Array, Mask
 
 Blocks = Callable[[int, int], tuple[Array, Array]]
-CHUNK = 256  # frames whose blocks are in memory at a time
-KEPT = 4096  # frames up to which the factor is kept; a longer one is computed again on the way back
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """Limits of memory; ranges tried were not recorded."""
+
+    chunk_frames: int = 256  # frames whose blocks are in memory at a time
+    kept_frames: int = 4096  # longest take whose factor is kept; of longer ones it is computed again in the back sweep
+
+
+TUNING = Tuning()
 
 
 class BlockCholesky:
-    """Solves ``H x = r`` for a symmetric positive definite H of f by f blocks, of which three diagonals are not zero.
+    """Solves ``H x = r`` for a symmetric positive definite H of f by f blocks with three non-zero block diagonals.
 
-    With pivots ``P[t+1] = D[t+1] - C[t] P[t]^-1 C[t]'`` the solve is one sweep forward and one back. A factor of many
-    frames would fill the memory: beyond `KEPT` frames only the pivot that enters each chunk is kept, and the chunk is
+    With pivots ``P[t+1] = D[t+1] - C[t] P[t]^-1 C[t]'`` the solve is a forward and a back sweep. A factor of many
+    frames would fill the memory: beyond `kept_frames` frames only the pivot that enters each chunk is kept, and the chunk is
     factorised anew on the way back.
 
     Parameters
@@ -35,17 +45,17 @@ class BlockCholesky:
 
     def __init__(self, blocks: Blocks, frames: int, free: Mask | None = None) -> None:
         self._blocks, self._frames, self._free = blocks, frames, free
-        self._starts = range(0, frames, CHUNK)
+        self._starts = range(0, frames, TUNING.chunk_frames)
         self._entering: list[Array | None] = [None]
         self._kept: list[tuple[Array, Array]] = []
-        if frames <= KEPT:
+        if frames <= TUNING.kept_frames:
             for index in range(len(self._starts)):
                 self._kept.append(self._factorise(index))
 
     def _factorise(self, index: int) -> tuple[Array, Array]:
-        """Return inverted pivots, (k, m, m), and gains ``C P^-1``, (k, m, m), of one chunk, and note what leaves it."""
+        """Return inverted pivots, (k, m, m), and gains ``C P^-1``, (k, m, m), of a chunk; store the pivot that enters the next."""
         start = self._starts[index]
-        diagonal, coupling = self._masked(start, min(start + CHUNK, self._frames))
+        diagonal, coupling = self._masked(start, min(start + TUNING.chunk_frames, self._frames))
         inverses, gains = np.empty_like(diagonal), np.empty_like(diagonal)
         carried = self._entering[index]
         for frame, (block, ahead) in enumerate(zip(diagonal, coupling, strict=True)):
@@ -86,7 +96,7 @@ class BlockCholesky:
         for index in reversed(range(len(self._starts))):
             start = self._starts[index]
             inverses, gains = self._factors(index)
-            alone = np.matmul(inverses, reduced[start : start + CHUNK, :, None])[..., 0]
+            alone = np.matmul(inverses, reduced[start : start + TUNING.chunk_frames, :, None])[..., 0]
             for offset in reversed(range(len(gains))):
                 after = alone[offset] - after @ gains[offset]
                 solved[start + offset] = after

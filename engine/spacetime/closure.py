@@ -1,4 +1,4 @@
-"""Lips and lids that meet: which gaps there are on a face, and when they are closed (SLS12 section 7.1)."""
+"""Closures of lips and lids: the gaps of a face, and when they count as closed (SLS12 section 7.1)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.take import SHAPES, Array
 
 @dataclass(frozen=True)
 class Gap:
-    """Two landmarks that meet when it is closed; `closed_mm` and `open_mm` are where closing begins and ceases to count."""
+    """The gap between two landmarks: at `closed_mm` and below it counts as closed, at `open_mm` and above as open."""
 
     name: str
     upper: str
@@ -32,11 +32,11 @@ GAPS: tuple[Gap, ...] = (
 
 
 class Gaps:
-    """The gaps of one character: vectors from the lower to the upper landmark, linear in the weights.
+    """Measures the gaps of one character: vectors from the lower to the upper landmark, linear in the weights.
 
     Parameters
     ----------
-    character : one with the landmarks of `GAPS`, or of some of them; the others are left out
+    character : has the landmarks of all `GAPS` or of some; gaps without landmarks are left out
     """
 
     def __init__(self, character: Character) -> None:
@@ -48,17 +48,17 @@ class Gaps:
         self.rows = (upper_deltas - lower_deltas).reshape(len(SHAPES), -1).T  # (3 g, 52) mm per weight
 
     def sizes(self, weights: Array) -> Array:
-        """Return how wide each gap is, (frames, g) mm, of weights, (frames, 52)."""
+        """Return the width of each gap, (frames, g) mm, of weights, (frames, 52)."""
         vectors = self.rest + (weights @ self.rows.T).reshape(len(weights), -1, 3)
         return np.asarray(np.linalg.norm(vectors, axis=2))
 
     def closedness(self, weights: Array) -> Array:
-        """Return how far each gap counts as closed, (frames, g) in 0..1, of weights, (frames, 52)."""
+        """Return the degree of closure of each gap, (frames, g) in 0..1, of weights, (frames, 52)."""
         return closedness(self.sizes(weights), self.gaps)
 
 
 def closedness(sizes: Array, gaps: tuple[Gap, ...] = GAPS) -> Array:
-    """Return how far gaps of given sizes, (frames, g) mm, count as closed, (frames, g) in 0..1; an unknown one is open."""
+    """Return the degree of closure, (frames, g) in 0..1, of gaps of given widths, (frames, g) mm; an unknown width is open."""
     closed = np.array([gap.closed_mm for gap in gaps])
     opened = np.array([gap.open_mm for gap in gaps])
     share = np.clip((opened - np.where(np.isfinite(sizes), sizes, np.inf)) / (opened - closed), 0.0, 1.0)

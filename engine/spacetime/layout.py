@@ -1,4 +1,4 @@
-"""Where the 54 markers sit: a rule over landmarks, so that it holds on any head that has them (SLS12 figure 5)."""
+"""The layout of the 54 markers by a rule over landmarks, for any head that has them (SLS12 figure 5)."""
 
 from __future__ import annotations
 
@@ -13,16 +13,24 @@ from engine.errors import EditError
 from engine.mesh import parts_of
 from engine.take import SHAPE_INDEX, Array
 
-REACH = 0.15  # of half the distance of the eyes: how far beside the wanted place a vertex may be in front of it
-DEPTH = 0.2  # of the same: how far behind the foremost vertex the skin still counts as in front
-JAW_SLACK = 0.2  # of the jaw's longest way: how far a marker may move beyond the two landmarks that it lies between
+
+@dataclass(frozen=True)
+class Tuning:
+    """Tolerances of the rule; ranges tried were not recorded."""
+
+    reach: float = 0.15  # of half the distance of the eyes; how far beside the target a vertex may be
+    depth: float = 0.2  # of the same; how far behind the foremost vertex a vertex may be
+    jaw_slack: float = 0.2  # of the jaw's longest displacement; how far a marker may move beyond its two landmarks
+
+
+TUNING = Tuning()
 
 
 @dataclass(frozen=True)
 class Place:
-    """One marker: a share of the way between two landmarks, then aside and up in half distances of the eyes.
+    """The place of a marker: a share of the way between two landmarks, then aside and up in half distances of the eyes.
 
-    With no way and no offset the marker is the landmark itself; otherwise the skin in front of that place.
+    Without either the marker is the landmark itself; otherwise it is the foremost skin at that place.
     """
 
     name: str
@@ -83,7 +91,7 @@ MARKERS: tuple[str, ...] = tuple(place.name for place in PLACES)
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Which vertex of a character carries which marker.
+    """The vertices of a character that carry the markers.
 
     Attributes
     ----------
@@ -99,11 +107,11 @@ class Layout:
         return character.neutral[self.vertices].astype(np.float64)
 
     def deltas(self, character: Character) -> Array:
-        """Return what each shape does to each marker, (52, n, 3) mm."""
+        """Return the displacement of each marker by each shape, (52, n, 3) mm."""
         return character.deltas[:, self.vertices].astype(np.float64)
 
     def pick(self, names: Sequence[str]) -> Layout:
-        """Return the layout of some of its markers, in the order asked; raises `EditError` for one it lacks."""
+        """Return the layout of some of its markers, in the order given; raises `EditError` for a marker it lacks."""
         index = {name: place for place, name in enumerate(self.names)}
         missing = [name for name in names if name not in index]
         if missing:
@@ -112,7 +120,7 @@ class Layout:
 
 
 def named(vertices: Mapping[str, int]) -> Layout:
-    """Return the layout that a landmark file gives, vertex by marker name."""
+    """Return the layout of a landmark file: vertices by marker name."""
     return Layout(tuple(vertices), np.array(list(vertices.values()), np.int64))
 
 
@@ -136,27 +144,27 @@ def _vertex(place: Place, character: Character, points: Array, skin: npt.NDArray
         return character.landmarks[place.start]
     end = points[character.landmarks[place.end]] if place.end else start
     unit = abs(points[character.landmarks["lid_upper_left"]] - points[character.landmarks["lid_upper_right"]])[0] / 2
-    wanted = start + place.share * (end - start) + unit * np.array([place.aside, place.up, 0.0])
-    return _in_front(wanted, points, _with_jaw(place, character, skin), unit)
+    target = start + place.share * (end - start) + unit * np.array([place.aside, place.up, 0.0])
+    return _in_front(target, points, _with_jaw(place, character, skin), unit)
 
 
 def _with_jaw(place: Place, character: Character, skin: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    """Return the skin that follows the jaw as a place between two landmarks does: no lower lip for the upper one's."""
+    """Return the skin that moves with the jaw as two landmarks do, so that no lower lip stands for an upper."""
     if not place.end:
         return skin
     way = np.linalg.norm(character.deltas[SHAPE_INDEX["jawOpen"]], axis=1)
     ends = way[[character.landmarks[place.start], character.landmarks[place.end]]]
-    slack = JAW_SLACK * way.max()
+    slack = TUNING.jaw_slack * way.max()
     follows = (way[skin] >= ends.min() - slack) & (way[skin] <= ends.max() + slack)
     return np.asarray(skin[follows], np.int64)
 
 
-def _in_front(wanted: Array, points: Array, skin: npt.NDArray[np.int64], unit: float) -> int:
+def _in_front(target: Array, points: Array, skin: npt.NDArray[np.int64], unit: float) -> int:
     """Return the vertex of the skin that a viewer in front sees at a place; ties break towards the middle of the face."""
-    beside = np.hypot(*(points[skin, :2] - wanted[:2]).T)
-    near = skin[beside <= max(REACH * unit, float(beside.min()) + 1e-6)]
-    front = near[points[near, 2] >= points[near, 2].max() - DEPTH * unit]
-    distance = np.round(np.hypot(*(points[front, :2] - wanted[:2]).T), 3)
+    beside = np.hypot(*(points[skin, :2] - target[:2]).T)
+    near = skin[beside <= max(TUNING.reach * unit, float(beside.min()) + 1e-6)]
+    front = near[points[near, 2] >= points[near, 2].max() - TUNING.depth * unit]
+    distance = np.round(np.hypot(*(points[front, :2] - target[:2]).T), 3)
     return int(front[np.lexsort((abs(points[front, 0]), distance))[0]])
 
 

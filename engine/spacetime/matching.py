@@ -1,4 +1,4 @@
-"""What matching movement is asked for; apart from how it is done, so that asking loads no solver."""
+"""The settings of movement matching, apart from the solver, so that a request loads none."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ class Bounds:
 
 @dataclass(frozen=True)
 class Matching:
-    """What a retarget is asked to respect, beside the source's velocities.
+    """The weights of the terms beside the source's velocities (SLS12 equation 4, section 7.1).
 
     Attributes
     ----------
-    alpha : how much the target's likely poses count, at 30 fps; the same on any head (SLS12 equation 4)
-    beta : how much the markers' places count beside their velocities, at 30 fps (section 7.1); velocities alone would
-        let a long-held pose sink back to rest
-    closure : how much lips and lids that meet in the source are to meet in the target
+    alpha : weight of the prior at 30 fps; the same on any head (SLS12 equation 4)
+    beta : weight of the markers' positions beside their velocities at 30 fps (section 7.1); with velocities alone a
+        pose of long duration would sink back to rest
+    closure : weight by which lips and lids that meet in the source meet in the target
     bounds : range of the weights, which most programs cut off beyond 0..1; None for the paper's free weights
     """
 

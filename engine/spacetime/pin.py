@@ -1,4 +1,4 @@
-"""Pins: a pose required exactly at a frame spreads over a range, and the motion stays (SLS12 section 6)."""
+"""Pins: a pose required exactly at a frame changes a range of frames and keeps their motion (SLS12 section 6)."""
 
 from __future__ import annotations
 
@@ -23,19 +23,29 @@ from engine.take import SHAPES, Array, Mask, Take, require_frames, runs
 from engine.words import counted
 
 FARTHEST_MM = 1000.0
-OPENED_MM = 0.05  # less is not seen
-CLOSING_ROUNDS, DAMPING_MM2 = 8, 0.5
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """Settings of closing what clipping has opened; ranges tried were not recorded."""
+
+    opened_mm: float = 0.05  # mm; smaller openings are invisible
+    rounds: int = 8  # of damped Gauss-Newton steps
+    damping_mm2: float = 0.5  # mm^2
+
+
+TUNING = Tuning()
 
 
 @dataclass(frozen=True)
 class Spreading:
-    """How a pin spreads.
+    """The weights of the terms by which a pin changes its range.
 
     Attributes
     ----------
-    alpha : pull back to the take's own pose, which lets small shapes return before large ones; 0 fills the range evenly
-    closure : strength by which lips and lids that meet in the take keep meeting, relative to the match of velocities
-    stiffness : what shapes pay for moving at all, so that closing takes the few that close instead of many that cancel
+    alpha : weight of the prior, which lets small shapes return before large ones; 0 spreads evenly over the range
+    closure : weight by which lips and lids that meet in the take keep meeting, relative to the match of velocities
+    stiffness : cost of any motion of a shape, so that few shapes close a gap instead of many that cancel
     """
 
     alpha: float = 0.0
@@ -46,63 +56,65 @@ class Spreading:
 class Spread:
     """Spreads changes of some frames over a motion, keeping its velocities and its closures.
 
-    With X = W - W0 it minimises ``|D X B'|^2 + stiffness |D X|^2 + alpha prior(X) + closure c |gaps(X)|^2``, the held
+    With X = W - W0 it minimises ``|D X B'|^2 + stiffness |D X|^2 + alpha prior(X) + closure c |gaps(X)|^2``, the fixed
     weights given: SLS12 equation 4 and section 7.1 with the take W0 itself as the source, so that no pin is no change.
-    c tells how far each gap of W0 is closed. Around a pin that stands where a gap is closed, the pin decides: that
-    closing is let go.
-    Factorises here; a call only substitutes.
+    c is the degree of closure of W0's gaps, and 0 for a closure during which there is a pin: the pin decides.
+    The constructor factorises; a call only substitutes.
 
     Parameters
     ----------
     motion : (f, 52), W0
-    held : (f, 52) bool, weights that a call gives
-    pins : frames among those held that are pins rather than the range's edges
-    spreading : how
+    fixed : (f, 52) bool, weights whose values a call is given
+    pins : frames among the fixed ones that are pins rather than the range's edges
+    spreading : weights of the terms
     character : whose markers and gaps are matched
     """
 
     def __init__(
         self,
         motion: Array,
-        held: Mask,
+        fixed: Mask,
         pins: Iterable[int],
         *,
         spreading: Spreading | None = None,
         character: Character | None = None,
     ) -> None:
         how, face = spreading or Spreading(), _face(character or bundled())
-        self._motion, self._held = motion, held
-        self._gaps, self._closedness = face.gaps, (how.closure > 0) * _let_go(face.gaps.closedness(motion), pins)
+        self._motion, self._fixed = motion, fixed
+        self._gaps, self._closedness = (
+            face.gaps,
+            (how.closure > 0) * _without_pinned(face.gaps.closedness(motion), pins),
+        )
         closed = how.closure * np.repeat(self._closedness, 3, axis=1)
-        closed[held.all(axis=1)] = 0.0
+        closed[fixed.all(axis=1)] = 0.0
         position = Position(face.gaps.rows, closed) if closed.any() else None
         alpha = how.alpha * face.prior.scale(face.basis)
         system = System(face.basis, len(motion), face.prior, alpha, position, stiffness=how.stiffness)
-        self._matcher = MovementMatcher(system, held)
+        self._matcher = MovementMatcher(system, fixed)
 
     def __call__(self, values: Array) -> Array:
-        """Return the new motion, (f, 52), of values, (f, 52), of which the held ones count and are met exactly.
+        """Return the new motion, (f, 52), for values, (f, 52), of which the fixed ones are met exactly.
 
-        The other weights are kept in 0..1, or in what the motion itself has.
+        The other weights are clipped to 0..1, or to the motion's own value beyond it.
         """
-        change = np.where(self._held, values - self._motion, 0.0)
+        change = np.where(self._fixed, values - self._motion, 0.0)
         moved = self._motion + self._matcher.settle(np.zeros_like(change), change)
         within = np.clip(moved, np.minimum(self._motion, 0.0), np.maximum(self._motion, 1.0))
-        return self._closed_again(np.where(self._held, values, within))
+        return self._closed_again(np.where(self._fixed, values, within))
 
     def _closed_again(self, moved: Array) -> Array:
-        """Close what limiting the weights has opened: the smallest change, frame by frame, that the weights allow."""
+        """Close what clipping has opened, by damped Gauss-Newton steps of the weights, frame by frame."""
         before = self._gaps.sizes(limited(self._motion))
         opened = np.maximum(self._gaps.sizes(limited(moved)) - before, 0.0) * self._closedness
-        rows = np.flatnonzero((opened > OPENED_MM).any(axis=1) & ~self._held.any(axis=1))
+        rows = np.flatnonzero((opened > TUNING.opened_mm).any(axis=1) & ~self._fixed.any(axis=1))
         closed = moved.copy()
-        for _ in range(CLOSING_ROUNDS if len(rows) else 0):
+        for _ in range(TUNING.rounds if len(rows) else 0):
             closed[rows] += self._closing(closed[rows], before[rows], self._closedness[rows])
             closed[rows] = np.clip(closed[rows], np.minimum(moved[rows], 0.0), np.maximum(moved[rows], 1.0))
         return closed
 
     def _closing(self, weights: Array, before: Array, closedness: Array) -> Array:
-        """Return a damped step, (n, 52), that brings gaps back to their sizes before, (n, g) mm, as far as they were closed."""
+        """Return a damped Gauss-Newton step, (n, 52), of the gaps to their widths before, (n, g) mm, by degree of closure."""
         gaps = self._gaps
         vectors = gaps.rest + (limited(weights) @ gaps.rows.T).reshape(len(weights), -1, 3)
         sizes = np.linalg.norm(vectors, axis=2)
@@ -112,7 +124,7 @@ class Spread:
         follow(slope, weights)
         missing = -np.maximum(sizes - before, 0.0) * closedness
         slope = np.where(((weights <= 0.0) & (np.einsum("ngs,ng->ns", slope, missing) < 0))[:, None, :], 0.0, slope)
-        gram = slope @ slope.transpose(0, 2, 1) + DAMPING_MM2 * np.eye(slope.shape[1])
+        gram = slope @ slope.transpose(0, 2, 1) + TUNING.damping_mm2 * np.eye(slope.shape[1])
         return np.asarray(np.einsum("ngs,ng->ns", slope, np.linalg.solve(gram, missing[..., None])[..., 0]))
 
 
@@ -129,8 +141,8 @@ def _face(character: Character) -> _Face:
     return _Face(basis, prior.from_shapes(basis), Gaps(character))
 
 
-def _let_go(closedness: Array, pins: Iterable[int]) -> Array:
-    """Return closedness, (f, g), without the closings during which there is a pin."""
+def _without_pinned(closedness: Array, pins: Iterable[int]) -> Array:
+    """Return closedness, (f, g), with 0 for the closures during which there is a pin."""
     kept = closedness.copy()
     for frame in pins:
         for gap in np.flatnonzero(closedness[frame] > 0):
@@ -140,15 +152,15 @@ def _let_go(closedness: Array, pins: Iterable[int]) -> Array:
 
 
 class PinSolver:
-    """Pins of one take over one range, prepared so that moving a slider costs as little as possible.
+    """Solves for the pins of a take over a range; factorised once, so that another pose of the same pins is cheap.
 
     Parameters
     ----------
     take : what is edited
     pins : pose by frame; which weights are pinned is fixed here, their values may change with each `solve`
-    frames : half-open range outside which nothing changes; the frames beside it hold it
-    whole : a pin without a weight pins that weight where the take has it; otherwise such weights are free
-    spreading : how
+    frames : half-open range outside which nothing changes; the frames beside it are its boundary
+    whole : a pin without some weight pins that weight to the take's value; otherwise such weights are free
+    spreading : weights of the terms
 
     Raises
     ------
@@ -169,12 +181,12 @@ class PinSolver:
         self._first, last = max(frames[0] - 1, 0), min(frames[1] + 1, len(take))
         self._motion = take.weights[self._first : last]
         self._pinned = {frame: self._mask(pose) for frame, pose in pins.items()}
-        held = np.zeros(self._motion.shape, bool)
-        held[: frames[0] - self._first] = True
-        held[frames[1] - self._first :] = True
+        fixed = np.zeros(self._motion.shape, bool)
+        fixed[: frames[0] - self._first] = True
+        fixed[frames[1] - self._first :] = True
         for frame, mask in self._pinned.items():
-            held[frame - self._first] = mask
-        self._spread = Spread(self._motion, held, [frame - self._first for frame in pins], spreading=spreading)
+            fixed[frame - self._first] = mask
+        self._spread = Spread(self._motion, fixed, [frame - self._first for frame in pins], spreading=spreading)
 
     def _mask(self, pose: Pose) -> Mask:
         return np.ones(len(SHAPES), bool) if self._whole else np.isfinite(filled(pose))
@@ -185,10 +197,10 @@ class PinSolver:
         if pins.keys() != self._pinned.keys():
             raise EditError("The pins are at other frames than before.", "Prepare the range again.")
         for frame, pose in pins.items():
-            asked = filled(pose)
-            if not self._whole and not np.array_equal(np.isfinite(asked), self._pinned[frame]):
+            pose_row = filled(pose)
+            if not self._whole and not np.array_equal(np.isfinite(pose_row), self._pinned[frame]):
                 raise EditError("The pins hold other weights than before.", "Prepare the range again.")
-            values[frame - self._first] = np.where(np.isfinite(asked), asked, values[frame - self._first])
+            values[frame - self._first] = np.where(np.isfinite(pose_row), pose_row, values[frame - self._first])
         start, stop = self._frames
         return self._spread(values)[start - self._first : stop - self._first]
 
@@ -207,21 +219,21 @@ def pin(
     whole: bool = True,
     spreading: Spreading | None = None,
 ) -> Take:
-    """Return the take with poses pinned, spread over a half-open range; parameters and errors as `PinSolver`."""
+    """Pin poses of a take over a half-open range; parameters and errors as `PinSolver`."""
     return PinSolver(take, pins, frames, whole=whole, spreading=spreading).take(pins)
 
 
 def pose_reaching(take: Take, frame: int, controls: Mapping[str, float]) -> Array:
-    """Return the pose, (52,), nearest to a frame's whose controls have given values in mm, as far as weights allow."""
+    """Return the pose, (52,), nearest to a frame's at which controls have given values in mm, as far as weights allow."""
     if not 0 <= frame < len(take):
         raise EditError(f"Frame {frame} is not within the take, which has {counted(len(take), 'frame')}.")
     columns = np.array([control_index(name) for name in controls])
-    asked = np.array([list(controls.values())], float)
-    if not (np.abs(asked) <= FARTHEST_MM).all():
+    target = np.array([list(controls.values())], float)
+    if not (np.abs(target) <= FARTHEST_MM).all():
         raise EditError(f"A control is pinned to something that is not a number within {FARTHEST_MM:,.0f} mm.")
     here = take.weights[frame : frame + 1]
     every = np.ones(len(SHAPES), bool)
-    return np.asarray(exact.project(here, asked, columns, bundled_measurer(), free=every)[0])
+    return np.asarray(exact.project(here, target, columns, bundled_measurer(), free=every)[0])
 
 
 def _check(take: Take, pins: Mapping[int, Pose], frames: tuple[int, int]) -> None:

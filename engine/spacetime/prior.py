@@ -1,4 +1,4 @@
-"""Which poses a face is likely to take: a normal distribution found by PCA (SLS12 section 5)."""
+"""The prior over poses: a normal distribution by PCA (SLS12 section 5)."""
 
 from __future__ import annotations
 
@@ -9,12 +9,20 @@ import numpy as np
 from engine.errors import EditError
 from engine.take import Array
 
-FLOOR = 1e-4  # smallest variance, relative to the largest: directions that no example shows stay possible, at a price
+
+@dataclass(frozen=True)
+class Tuning:
+    """Regularisation of the prior; range tried not recorded."""
+
+    floor: float = 1e-4  # smallest variance, relative to the largest, so that unseen directions stay possible
+
+
+TUNING = Tuning()
 
 
 @dataclass(frozen=True, eq=False)
 class Prior:
-    """Minus twice the logarithm of how likely weights are: ``|factor w - offset|^2``, without unit.
+    """The negative log-likelihood of weights, twice and up to a constant: ``|factor w - offset|^2``, without unit.
 
     Attributes
     ----------
@@ -26,23 +34,22 @@ class Prior:
     offset: Array
 
     def cost(self, weights: Array) -> Array:
-        """Return how unlikely each frame is, (frames,), of weights, (frames, m)."""
+        """Return the cost of each frame, (frames,), of weights, (frames, m)."""
         return np.asarray(((weights @ self.factor.T - self.offset) ** 2).sum(axis=1))
 
     def scale(self, basis: Array) -> float:
-        """Return what alpha is multiplied by so that it means the same on any head with any number of markers.
+        """Return the factor, in mm^2, that makes alpha independent of the head and its number of markers.
 
-        An alpha of one then costs the average shape as much for being there as the match costs it for getting there
-        in one frame. In mm^2.
+        With an alpha of 1 the prior then costs the average shape as much as the match costs its motion there in one frame.
         """
         return float((basis**2).sum() / max(float((self.factor**2).sum()), 1e-300))
 
 
 def from_poses(basis: Array, poses: Array, *, about_rest: bool = True) -> Prior:
-    """Return the prior of a basis, (3n, m) mm, from example weights, (poses, m), by PCA of what they do to markers.
+    """Return the prior of a basis, (3n, m) mm, from example weights, (poses, m), by PCA of their marker displacements.
 
     About the face at rest, or about the mean of the examples as in the paper; the mean of all shapes is a grimace
-    that a face at rest would be drawn towards. Shapes that cancel, such as a jaw to the left and to the right, move no
+    that would attract a face at rest. Shapes that cancel, such as a jaw to the left and to the right, move no
     marker; they are kept as small as the examples' weights. Raises `EditError` where the examples move nothing.
     """
     mean = np.zeros(basis.shape[1]) if about_rest else poses.mean(axis=0)
@@ -54,12 +61,12 @@ def from_poses(basis: Array, poses: Array, *, about_rest: bool = True) -> Prior:
     values, vectors = np.linalg.eigh(coordinates.T @ coordinates / len(poses))
     if not len(values) or values[-1] <= 0:
         raise EditError("The prior's examples move no marker.", "Give it takes or shapes that move the face.")
-    whitening = vectors / np.sqrt(np.maximum(values, FLOOR * values[-1]))
+    whitening = vectors / np.sqrt(np.maximum(values, TUNING.floor * values[-1]))
     cancelling = directions[~known] / np.sqrt((poses**2).mean())
     factor = np.vstack([whitening.T @ to_markers, cancelling])
     return Prior(factor, factor @ mean)
 
 
 def from_shapes(basis: Array, *, about_rest: bool = True) -> Prior:
-    """Return the prior whose examples are the shapes themselves, each once: what a well-made character affords."""
+    """Return the prior whose examples are the shapes themselves, each once."""
     return from_poses(basis, np.eye(basis.shape[1]), about_rest=about_rest)

@@ -1,12 +1,13 @@
-"""Movement matching: weights that move a face as the source moves (SLS12)."""
+"""Movement matching: weights whose marker velocities are the source's (SLS12)."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from engine.errors import EditError
-from engine.spacetime.blocks import KEPT, BlockCholesky
-from engine.spacetime.bounded import BoundedSolver, Tell, silent
+from engine.spacetime import blocks
+from engine.spacetime.blocks import BlockCholesky
+from engine.spacetime.bounded import BoundedSolver, Progress, ignore
 from engine.spacetime.matching import Bounds
 from engine.spacetime.modes import Modes
 from engine.spacetime.system import System
@@ -14,7 +15,7 @@ from engine.take import Array, Mask
 
 
 class MovementMatcher:
-    """Weights whose marker velocities match the source's (SLS12 eq. 2, 4, 5 and section 7.1).
+    """Solves for weights whose marker velocities match the source's (SLS12 eq. 2, 4, 5 and section 7.1).
 
     Minimises ``|D (B W)' - D S'|^2 + alpha prior(W) + beta |M (B W - S)|^2`` with the pinned weights of W given. Where
     all frames have the same terms and are pinned whole, the shapes separate into modes and each is a tridiagonal
@@ -23,41 +24,41 @@ class MovementMatcher:
     Parameters
     ----------
     system : what is minimised
-    held : (f, m) bool, pinned weights; None pins nothing
+    fixed : (f, m) bool, pinned weights; None for none
     bounds : range of the weights that are not pinned, or None
-    tell : is told how far a bounded solve is, 0..1; it may raise, to stop
+    progress : called with the share of a bounded solve that is done, 0..1; it may raise, to stop
 
     Raises
     ------
-    EditError : where neither a pin, nor the prior, nor a held place says where the motion starts
+    EditError : where neither a pin, nor the prior, nor a position determines where the motion starts
     """
 
     def __init__(
-        self, system: System, held: Mask | None = None, *, bounds: Bounds | None = None, tell: Tell = silent
+        self, system: System, fixed: Mask | None = None, *, bounds: Bounds | None = None, progress: Progress = ignore
     ) -> None:
-        self._system, self._bounds, self._tell, self._told = system, bounds, tell, 0.0
-        self._remembered: dict[int, tuple[Array, Array]] = {}
-        self._held = np.zeros((system.frames, system.count), bool) if held is None else held
-        whole: Mask = np.asarray(self._held.all(axis=1))
-        self.separable = system.uniform and bool((self._held.any(axis=1) == whole).all())
+        self._system, self._bounds, self._progress, self._share = system, bounds, progress, 0.0
+        self._cache: dict[int, tuple[Array, Array]] = {}
+        self._fixed = np.zeros((system.frames, system.count), bool) if fixed is None else fixed
+        whole: Mask = np.asarray(self._fixed.all(axis=1))
+        self.separable = system.uniform and bool((self._fixed.any(axis=1) == whole).all())
         self._modes = Modes(system, whole) if self.separable else None
-        self._cholesky = None if self.separable else self._factorise(~self._held)
+        self._cholesky = None if self.separable else self._factorise(~self._fixed)
 
     def _factorise(self, free: Mask) -> BlockCholesky:
         return BlockCholesky(self._blocks, self._system.frames, None if free.all() else free)
 
     def _blocks(self, start: int, stop: int) -> tuple[Array, Array]:
-        """Return the system's blocks, kept for the bounded solve of a take that is not long."""
-        self._tell(self._told)  # so that a long take, too, can be stopped within a second
-        if self._bounds is None or self._system.frames > KEPT:
+        """Return the system's blocks, cached for the bounded solve of a take that is not long."""
+        self._progress(self._share)  # so that a long take, too, can be stopped within a second
+        if self._bounds is None or self._system.frames > blocks.TUNING.kept_frames:
             return self._system.blocks(start, stop)
-        if start not in self._remembered:
-            self._remembered[start] = self._system.blocks(start, stop)
-        return self._remembered[start]
+        if start not in self._cache:
+            self._cache[start] = self._system.blocks(start, stop)
+        return self._cache[start]
 
-    def _pass_on(self, share: float) -> None:
-        self._told = share
-        self._tell(share)
+    def _report(self, share: float) -> None:
+        self._share = share
+        self._progress(share)
 
     def solve(self, source: Array, *, places: Array | None = None, values: Array | None = None) -> Array:
         """Return weights, (f, m).
@@ -72,12 +73,12 @@ class MovementMatcher:
         return self.settle(self._system.right_side(source, places), values)
 
     def settle(self, right: Array, values: Array | None = None) -> Array:
-        """Return weights, (f, m), of a right side as `System.right_side` gives it; zero where the source is at rest."""
-        given = np.zeros_like(right) if values is None else np.where(self._held, values, 0.0)
+        """Return weights, (f, m), for a right side as `System.right_side` gives it; zero where the source is at rest."""
+        given = np.zeros_like(right) if values is None else np.where(self._fixed, values, 0.0)
         weights = self._unbounded(right, given)
         if self._bounds is None:
             return weights
-        return BoundedSolver(self._system, self._held, self._bounds, self._factorise, self._pass_on).solve(
+        return BoundedSolver(self._system, self._fixed, self._bounds, self._factorise, self._report).solve(
             weights, right
         )
 
@@ -85,9 +86,9 @@ class MovementMatcher:
         if self._modes is not None:
             return self._modes.solve(right, given)
         assert self._cholesky is not None
-        if not self._held.any():
+        if not self._fixed.any():
             return self._cholesky.solve(right)
-        return self._cholesky.solve(np.where(self._held, given, right - self._system.apply(given)))
+        return self._cholesky.solve(np.where(self._fixed, given, right - self._system.apply(given)))
 
 
 def check_source(source: Array, system: System) -> None:

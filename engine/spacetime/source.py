@@ -1,4 +1,4 @@
-"""What is carried to another head: marker motion with the head still, closures, and what no marker shows."""
+"""The source of a retarget: marker displacements without head motion, closures, and shapes that no marker shows."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ MARKER_GAPS = {
     "lids_left": ("lid_upper_left", "lid_lower_left"),
     "lids_right": ("lid_upper_right", "lid_lower_right"),
 }
-LIDS_REST_MM = 10.0  # a capture's lids are measured as a share of their distance at rest, this much on a usual face
+LIDS_REST_MM = 10.0  # mm between lid markers of a usual face at rest; a capture's lids are measured relative to it
 
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A performance as marker displacements from a face at rest, the head held still.
+    """A performance as marker displacements from a face at rest, without head motion.
 
     Attributes
     ----------
@@ -53,11 +53,11 @@ class Source:
 
     @property
     def is_capture(self) -> bool:
-        """Whether it is markers that were tracked, and not a take, which may be at rest throughout."""
+        """Whether the source is a marker capture rather than a take."""
         return self.head is not None
 
     def part(self, start: int, stop: int) -> Source:
-        """Return frames [start, stop), for looking at settings on a short range."""
+        """Return frames [start, stop), for a preview of the settings."""
         rows = slice(start, stop)
         take = replace(
             self.take,
@@ -71,7 +71,7 @@ class Source:
 
 
 def from_take(take: Take, character: Character, layout: Layout | None = None) -> Source:
-    """Return what the markers of a character do when it plays a take."""
+    """Return the marker displacements of a character that plays a take."""
     placed = layout or standard(character)
     weights = drawable(take.weights)
     moved = np.einsum("fs,snx->fnx", weights, placed.deltas(character), optimize=True)
@@ -88,7 +88,7 @@ def from_markers(
     turn: Array | None = None,
     landmarks: Mapping[str, str] | None = None,
 ) -> Source:
-    """Return a capture with its head motion taken out, measured from a frame in which the face is at rest.
+    """Return a capture without its head motion, as displacements from a frame with the face at rest.
 
     Parameters
     ----------
@@ -114,20 +114,20 @@ def from_markers(
         name=markers.name,
         notices=markers.notices,
     )
-    moved = still_of_noise(still - neutral)
-    made = Source(moved, neutral, markers.names, np.full((len(markers), len(GAPS)), np.nan), take, head)
-    return with_gaps(made, landmarks or {})
+    moved = without_jitter(still - neutral)
+    source = Source(moved, neutral, markers.names, np.full((len(markers), len(GAPS)), np.nan), take, head)
+    return with_gaps(source, landmarks or {})
 
 
 def with_gaps(source: Source, landmarks: Mapping[str, str]) -> Source:
-    """Return a capture with lips and lids measured by its markers, as far as it has those for it; `from_markers` has both."""
+    """Return a capture with the gaps of lips and lids measured between its markers, where it has them."""
     called = {landmarks.get(name, name): column for column, name in enumerate(source.names)}
     sizes = _gaps(bridge(source.displacements)[0] + source.neutral, source.neutral, called)
     return replace(source, gaps=sizes)
 
 
-def still_of_noise(displacements: Array) -> Array:
-    """Return displacements, (frames, n, 3) mm, without a tracker's jitter; gaps stay gaps."""
+def without_jitter(displacements: Array) -> Array:
+    """Remove the tracker's jitter from displacements, (frames, n, 3) mm; gaps stay gaps."""
     return np.where(np.isfinite(displacements), denoise(bridge(displacements)[0]), np.nan)
 
 
@@ -146,13 +146,13 @@ def _gaps(positions: Array, neutral: Array, columns: Mapping[str, int]) -> Array
 
 
 def bridge(displacements: Array) -> tuple[Array, Array]:
-    """Return displacements, (frames, n, 3), with gaps bridged, and how far each step is believed, (frames - 1, n).
+    """Interpolate the gaps of displacements, (frames, n, 3), and return the confidence of each step, (frames - 1, n).
 
-    A gap is crossed in a straight line and, the longer it is, the less its steps count: between two sightings g frames
-    apart a marker may have been anywhere. Before the first sighting and after the last it is held and not believed.
+    Interpolation is linear; between two sightings g frames apart a step has confidence 1 / g^2, since the marker may have
+    been anywhere. Before the first sighting and after the last the position is constant, with confidence 0.
     """
     filled = displacements.copy()
-    believed = np.ones((len(displacements) - 1, displacements.shape[1]))
+    confidence = np.ones((len(displacements) - 1, displacements.shape[1]))
     frames = np.arange(len(displacements))
     for marker in range(displacements.shape[1]):
         gone: Mask = ~np.asarray(np.isfinite(displacements[:, marker]).all(axis=1))
@@ -160,11 +160,11 @@ def bridge(displacements: Array) -> tuple[Array, Array]:
             continue
         seen = np.flatnonzero(~gone)
         if not len(seen):
-            filled[:, marker], believed[:, marker] = 0.0, 0.0
+            filled[:, marker], confidence[:, marker] = 0.0, 0.0
             continue
         for axis in range(3):
             filled[gone, marker, axis] = np.interp(frames[gone], seen, displacements[seen, marker, axis])
         for start, stop in runs(gone):
             inside = start > 0 and stop < len(gone)
-            believed[max(start - 1, 0) : stop, marker] = 1 / (stop - start + 1) ** 2 if inside else 0.0
-    return filled, believed
+            confidence[max(start - 1, 0) : stop, marker] = 1 / (stop - start + 1) ** 2 if inside else 0.0
+    return filled, confidence

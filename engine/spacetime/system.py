@@ -1,4 +1,4 @@
-"""The quadratic that movement matching minimises, applied and cut into blocks but never assembled (SLS12 eq. 4, 5)."""
+"""The quadratic form of movement matching, as an operator and as blocks, never assembled (SLS12 eq. 4, 5)."""
 
 from __future__ import annotations
 
@@ -10,13 +10,21 @@ from engine.errors import EditError
 from engine.spacetime.prior import Prior
 from engine.take import Array
 
-# So small that it only decides what the markers leave open: a shape that moves none of them follows its pins.
-UNSEEN = 1e-7
+
+@dataclass(frozen=True)
+class Tuning:
+    """Regularisation of the quadratic form; any value this small will do."""
+
+    # Stiffness relative to the average shape: decides only shapes that move no marker, which then follow their pins.
+    stiffness: float = 1e-7
+
+
+TUNING = Tuning()
 
 
 @dataclass(frozen=True, eq=False)
 class Position:
-    """Points, or differences of points, whose place is held beside their velocity (SLS12 section 7.1).
+    """The position term: points, or differences of points, with target positions (SLS12 section 7.1).
 
     Attributes
     ----------
@@ -32,7 +40,7 @@ class Position:
 class System:
     """``|C D (W B' - S)|^2 + stiffness |D W|^2 + alpha prior(W) + |beta^(1/2) (W P' - T)|^2`` over W, (f, m).
 
-    D is the difference of neighbouring frames, B the basis, P the rows of `position`, S and T what the source does.
+    D is the difference of neighbouring frames, B the basis, P the rows of `position`, S and T the source's displacements.
 
     Attributes
     ----------
@@ -40,9 +48,9 @@ class System:
     frames : f
     prior : of one frame, or None
     alpha : its strength, already in the unit of the match
-    position : what is held in place, or None
-    believed : (f - 1, 3n) in 0..1, how far each coordinate's step to the next frame is to be believed; None for fully
-    stiffness : what a shape pays for its own velocity, relative to what the average shape pays for its markers'
+    position : the position term, or None
+    confidence : (f - 1, 3n) in 0..1, weight of each coordinate's step to the next frame; None for 1 throughout
+    stiffness : cost of a shape's own velocity, relative to the average shape's cost for its markers'
     """
 
     basis: Array
@@ -50,8 +58,8 @@ class System:
     prior: Prior | None = None
     alpha: float = 0.0
     position: Position | None = None
-    believed: Array | None = None
-    stiffness: float = UNSEEN
+    confidence: Array | None = None
+    stiffness: float = TUNING.stiffness
 
     def __post_init__(self) -> None:
         if not np.isfinite(self.basis).all():
@@ -65,10 +73,10 @@ class System:
     @property
     def uniform(self) -> bool:
         """Return whether every frame has the same terms, so that time and shapes separate."""
-        return self.believed is None and (self.position is None or self.position.weights.ndim == 1)
+        return self.confidence is None and (self.position is None or self.position.weights.ndim == 1)
 
     def velocity_gram(self) -> Array:
-        """Return (m, m), what a unit step in time of the weights costs where all markers are seen."""
+        """Return the quadratic form of a step in time of the weights where all markers are seen, (m, m)."""
         gram = self.basis.T @ self.basis
         return np.asarray(gram + self._own * np.eye(self.count))
 
@@ -77,7 +85,7 @@ class System:
         return self.stiffness * max(float((self.basis**2).sum()) / max(self.count, 1), 1e-12)
 
     def constant_gram(self) -> Array:
-        """Return (m, m), what each frame pays for its weights whatever the frame: prior, and held places if uniform."""
+        """Return the quadratic form of each frame's weights, (m, m): the prior, and positions if uniform."""
         gram = np.zeros((self.count, self.count))
         if self.prior is not None:
             gram += self.alpha * (self.prior.factor.T @ self.prior.factor)
@@ -85,28 +93,28 @@ class System:
             gram += self.position.rows.T @ (self.position.weights[:, None] * self.position.rows)
         return gram
 
-    def right_side(self, source: Array, held_in_place: Array | None = None) -> Array:
-        """Return (f, m), minus the gradient at W = 0, of source displacements, (f, 3n) mm, and places, (f, k) mm."""
-        if self.believed is None:
+    def right_side(self, source: Array, places: Array | None = None) -> Array:
+        """Return minus the gradient at W = 0, (f, m), for source displacements, (f, 3n) mm, and places, (f, k) mm."""
+        if self.confidence is None:
             moved = np.diff(source @ self.basis, axis=0)
         else:
-            moved = (np.diff(source, axis=0) * self.believed) @ self.basis
+            moved = (np.diff(source, axis=0) * self.confidence) @ self.basis
         right = np.zeros((self.frames, self.count))
         right[1:] += moved
         right[:-1] -= moved
         if self.prior is not None:
             right += self.alpha * (self.prior.offset @ self.prior.factor)
-        if self.position is not None and held_in_place is not None:
-            right += (held_in_place * self.position.weights) @ self.position.rows
+        if self.position is not None and places is not None:
+            right += (places * self.position.weights) @ self.position.rows
         return right
 
     def apply(self, weights: Array) -> Array:
-        """Return half the Hessian times weights, (f, m): `right_side` of the motion that the weights make."""
+        """Return half the Hessian times weights, (f, m)."""
         applied = weights @ self.constant_gram()
         steps = np.diff(weights, axis=0)
         moved = steps @ self.velocity_gram()
-        if self.believed is not None:
-            moved = ((steps @ self.basis.T) * self.believed) @ self.basis + self._own * steps
+        if self.confidence is not None:
+            moved = ((steps @ self.basis.T) * self.confidence) @ self.basis + self._own * steps
         applied[1:] += moved
         applied[:-1] -= moved
         if self.position is not None and self.position.weights.ndim == 2:
@@ -119,7 +127,7 @@ class System:
         The coupling of the last frame of all is zero.
         """
         first, last = max(start - 1, 0), min(stop, self.frames - 1)
-        steps = self._step_grams(first, last)  # step t is paid by frames t and t + 1
+        steps = self._step_grams(first, last)  # step t enters frames t and t + 1
         diagonal = np.repeat(self.constant_gram()[None], stop - start, axis=0)
         coupling = np.zeros_like(diagonal)
         ahead, behind, offset = steps[start - first :], steps[: stop - 1 - first], first + 1 - start
@@ -131,10 +139,10 @@ class System:
         return diagonal, coupling
 
     def _step_grams(self, first: int, last: int) -> Array:
-        """Return (last - first, m, m), what each step t -> t + 1, first <= t < last, costs."""
-        if self.believed is None:
+        """Return the quadratic forms of the steps t -> t + 1, first <= t < last, (last - first, m, m)."""
+        if self.confidence is None:
             return np.broadcast_to(self.velocity_gram(), (last - first, self.count, self.count))
-        return _weighted_grams(self.basis, self.believed[first:last]) + self._own * np.eye(self.count)
+        return _weighted_grams(self.basis, self.confidence[first:last]) + self._own * np.eye(self.count)
 
 
 def _weighted_grams(rows: Array, weights: Array) -> Array:

@@ -1,1 +1,1 @@
-"""From what is said to what the mouth does: phones and the visemes they belong to."""
+"""Phones and the visemes that they belong to."""

@@ -59,7 +59,7 @@ class VisemeLane:
         return np.array([known[cue.label] for cue in self.cues], np.int64)
 
     def at(self, time_s: float) -> int | None:
-        """Return the cue that is said at a time of the take."""
+        """Return the cue at a time of the take."""
         index = int(np.searchsorted(self.times_s[:, 0], time_s, side="right")) - 1
         return index if index >= 0 and time_s < self.times_s[index, 1] else None
 
@@ -89,7 +89,7 @@ class VisemeLane:
         return index, (index + 1 if shared else None)
 
     def frames_of(self, index: int, fps: float) -> tuple[int, int]:
-        """Return the half-open range of frames over which a cue is said, at least one."""
+        """Return the half-open range of a cue's frames, at least one."""
         start, stop = np.ceil(self.times_s[index] * fps - 0.5).astype(int).tolist()
         return start, max(stop, start + 1)
 

@@ -23,7 +23,7 @@ FARTHEST_S = 3e7
 
 @dataclass(frozen=True)
 class Cue:
-    """What is said over a stretch of time: a phone, or the name of a viseme class."""
+    """A label over a stretch of time: a phone, or the name of a viseme class."""
 
     start_s: float
     stop_s: float
@@ -73,6 +73,6 @@ def classes_over(cues: Sequence[Cue], *, frames: int, fps: float) -> np.ndarray:
 def one_hot(classes: np.ndarray) -> Array:
     """Return (frames, 18) with a one at each frame's class, and all zero where the class is −1."""
     hot = np.zeros((len(classes), len(NAMES)))
-    said = classes >= 0
-    hot[np.flatnonzero(said), classes[said]] = 1.0
+    present = classes >= 0
+    hot[np.flatnonzero(present), classes[present]] = 1.0
     return hot

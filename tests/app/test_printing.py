@@ -59,7 +59,9 @@ def test_names_of_files_reach_the_terminal_as_they_are(
 @pytest.mark.parametrize(
     "arguments", [["\x1b[2J"], ["info", "--\x1b[2J"], ["edit", "\x1b[2J"], ["info", "a", "\x1b[2J"]]
 )
-def test_words_of_the_command_line_are_told_as_text(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> None:
+def test_words_of_the_command_line_are_printed_as_text(
+    capsys: pytest.CaptureFixture[str], arguments: list[str]
+) -> None:
     assert cli.run(arguments) == 2
     out, err = capsys.readouterr()
     assert "\x1b" not in out + err and err.strip()

@@ -13,7 +13,7 @@ def test_what_the_program_opens_is_there(path: Path) -> None:
 
 
 def test_an_installed_package_uses_the_assets_inside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(assets, "files", lambda package: tmp_path / package)
+    monkeypatch.setattr(assets, "PACKAGE", tmp_path / "engine")
     assert assets._folder() == tmp_path / "assets"
     (tmp_path / "engine" / assets.INSTALLED).mkdir(parents=True)
     assert assets._folder() == tmp_path / "engine" / assets.INSTALLED

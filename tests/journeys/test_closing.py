@@ -33,7 +33,7 @@ def test_an_eye_closes_for_a_blink_and_says_so(qtbot: QtBot, window: MainWindow)
     asked = asked[~np.isnan(session.document.asked[asked, EYE])]
     assert 1 < len(asked) <= BLINK_S * fps + 2
     assert session.document.controls[100, EYE] < 1.0
-    told = window.facts.told.text()
+    told = window.facts.outcome.text()
     assert told.startswith(CONTROLS[EYE].title) and f"{session.document.controls[100, EYE]:.1f} mm, as asked" in told
     assert "believable" not in told and "limit" not in told
     shut = np.flatnonzero(np.abs(session.document.controls - session.document.original_controls)[:, EYE] > 1.0)
@@ -46,9 +46,11 @@ def test_what_is_said_follows_the_playhead(qtbot: QtBot, window: MainWindow) -> 
     session.view.move_playhead(102)
     asked = session.document.asked[102, EYE]
     assert abs(session.document.controls[102, EYE] - asked) < 0.1
-    assert window.facts.told.text() == f"{CONTROLS[EYE].title} {session.document.controls[102, EYE]:.1f} mm, as asked"
+    assert (
+        window.facts.outcome.text() == f"{CONTROLS[EYE].title} {session.document.controls[102, EYE]:.1f} mm, as asked"
+    )
     session.view.move_playhead(250)
-    told = window.facts.told.text()
+    told = window.facts.outcome.text()
     assert "mm, as asked (frame " in told and told.startswith(CONTROLS[EYE].title)
 
 

@@ -44,7 +44,7 @@ def test_what_is_chosen_stays_checked_when_it_is_chosen_again(window: MainWindow
             assert [each for each in names if window.actions_by_name[each].isChecked()] == [name]
 
 
-def test_the_key_of_the_tool_in_hand_leaves_its_button_lit(window: MainWindow) -> None:
+def test_the_key_of_the_current_tool_leaves_its_button_checked(window: MainWindow) -> None:
     window.curves.setFocus()
     for _ in range(2):
         QTest.keyClick(window.curves, Qt.Key.Key_V)

@@ -70,7 +70,7 @@ def test_a_span_is_marked_in_the_lane_and_unmarked_again(qtbot: QtBot, window: M
     assert marked[0] in session.document.marks.spans
 
 
-def test_dropping_a_fill_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWindow) -> None:
+def test_discarding_a_fill_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
     session.document.undo.clear()
     session.view.select((120, 180))

@@ -59,20 +59,20 @@ def test_a_tool_switch_gives_the_keys_to_the_lanes_and_not_to_a_button(window: M
         assert window.curves.hasFocus()
 
 
-def test_what_is_put_away_hands_the_keys_to_the_lanes(window: MainWindow) -> None:
+def test_what_is_hidden_gives_the_focus_to_the_lanes(window: MainWindow) -> None:
     with_sound(window)
     seen = {window.curves}
     for tool in TOOLS:
         window.actions_by_name[f"{tool}_tool"].trigger()
         for widget in [each for each in reached(window) if each not in seen]:
             seen.add(widget)
-            for put_away, bring_back in (
+            for hide, bring_back in (
                 (widget.hide, widget.show),
                 (lambda: widget.setEnabled(False), lambda: widget.setEnabled(True)),  # noqa: B023
             ):
                 widget.setFocus()
                 assert QApplication.focusWidget() is widget
-                put_away()
+                hide()
                 assert window.curves.hasFocus(), widget
                 bring_back()
 

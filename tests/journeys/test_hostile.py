@@ -40,7 +40,7 @@ def held(qtbot: QtBot, window: MainWindow, frame: int) -> QPoint:
     return start + QPoint(0, 12)
 
 
-def let_go(qtbot: QtBot, window: MainWindow, at: QPoint) -> None:
+def release(qtbot: QtBot, window: MainWindow, at: QPoint) -> None:
     QTest.mouseMove(window.curves.viewport(), at + QPoint(0, 3))
     QTest.mouseRelease(window.curves.viewport(), LEFT, PLAIN, at)
     settled(qtbot, window)
@@ -101,7 +101,7 @@ def test_a_take_of_a_frame_or_two_is_edited_at_its_ends(qtbot: QtBot, window: Ma
     settled(qtbot, window)
     for frame in (0, frames - 1):
         count = session.document.undo.count()
-        let_go(qtbot, window, held(qtbot, window, frame))
+        release(qtbot, window, held(qtbot, window, frame))
         assert session.document.undo.count() == count + 1
     session.view.select((0, frames))
     for name in (
@@ -132,18 +132,18 @@ def test_a_drag_is_broken_off_by_escape_a_tool_or_another_take(
     original = session.document.original.weights
     at = held(qtbot, window, 100)
     QTest.keyClick(window, Qt.Key.Key_Escape)
-    let_go(qtbot, window, at)
+    release(qtbot, window, at)
     assert session.document.draft is None and session.document.undo.count() == 0
     for tool in ("draw", "scale", "pin", "mark", "drag"):
         at = held(qtbot, window, 100)
         session.view.choose_tool(tool)
-        let_go(qtbot, window, at)
+        release(qtbot, window, at)
         session.view.choose_tool("drag")
         settled(qtbot, window)
         session.document.undo.setIndex(0)
         np.testing.assert_array_equal(session.document.take.weights, original)
     at = held(qtbot, window, 100)
     session.open(Take(np.full((2, len(SHAPES)), 0.2), 30.0, name="short"), None)
-    let_go(qtbot, window, at)
+    release(qtbot, window, at)
     assert len(session.document.take) == 2 and session.document.draft is None
     np.testing.assert_array_equal(session.document.take.weights, session.document.original.weights)

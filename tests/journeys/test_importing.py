@@ -64,7 +64,7 @@ def dropped(window: MainWindow, path: Path) -> None:
     window.dropEvent(QDropEvent(QPointF(9, 9), Qt.DropAction.CopyAction, data, LEFT, Qt.KeyboardModifier.NoModifier))
 
 
-def test_the_line_tells_rate_sides_and_reasons(qtbot: QtBot, window: MainWindow, leaning_file: Path) -> None:
+def test_the_line_shows_rate_sides_and_reasons(qtbot: QtBot, window: MainWindow, leaning_file: Path) -> None:
     line = window.importing
     assert line.isHidden()  # the demo take is nobody's file
     load(qtbot, window, leaning_file)

@@ -118,7 +118,7 @@ def test_lines_are_as_wide_on_a_finer_screen(window: MainWindow, monkeypatch: py
     assert {each.reached._pen.widthF() for each in window.curves.lanes} == {2.0}
 
 
-def test_weights_that_were_put_away_are_drawn_as_they_are_by_now(qtbot: QtBot, window: MainWindow) -> None:
+def test_hidden_weights_are_up_to_date_when_shown_again(qtbot: QtBot, window: MainWindow) -> None:
     session, key = window.session, weights_under(EYES[0])[0]
     session.view.expand(EYES[0])
     column = key - FIRST_WEIGHT

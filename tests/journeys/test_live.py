@@ -109,7 +109,7 @@ def test_a_recording_is_not_lost_to_a_question(
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Discard)
 
 
-def test_the_meter_tells_how_late_the_picture_is(qtbot: QtBot, window: MainWindow) -> None:
+def test_the_meter_shows_the_latency_of_the_picture(qtbot: QtBot, window: MainWindow) -> None:
     recording(qtbot, window, Take(weights=demo.performance().weights[:40], fps=30.0))
     qtbot.waitUntil(lambda: "on screen" in window.live.status.text(), timeout=10_000)
     assert all(0 < spent < 10_000 for spent in window.live._shown_ms)

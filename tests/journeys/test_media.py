@@ -147,7 +147,7 @@ def test_what_lay_beside_a_take_is_in_its_project_and_undoing_older_steps_keeps_
     )
 
 
-def test_a_file_that_was_moved_is_located_and_another_content_is_told(
+def test_a_file_that_was_moved_is_located_and_a_different_content_reported(
     qtbot: QtBot, window: MainWindow, chosen: list[Path], tmp_path: Path
 ) -> None:
     session, project = window.session, tmp_path / "p" / "a.retake"

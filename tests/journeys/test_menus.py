@@ -168,7 +168,7 @@ def test_the_face_is_seen_as_recorded_and_a_right_drag_still_pans(qtbot: QtBot, 
     QTest.mouseClick(face, Qt.MouseButton.RightButton, pos=middle)
     menu = window._contexts.menu
     assert menu is not None
-    chosen(qtbot, window, menu, "See the face as recorded")
+    chosen(qtbot, window, menu, "Show the recorded face")
     assert face.view == "Before" and window.actions_by_name["view_before"].isChecked()
     before = face.camera
     QTest.mousePress(face, Qt.MouseButton.RightButton, pos=middle)
@@ -242,7 +242,7 @@ def test_a_fill_that_is_kept_is_no_span_to_work_on(qtbot: QtBot, window: MainWin
     settled(qtbot, window)
 
 
-def test_hostile_region_and_many_spans_are_told_in_time(window: MainWindow) -> None:
+def test_hostile_region_and_many_spans_are_listed_in_time(window: MainWindow) -> None:
     spans = tuple(Span(frame, frame + 1, kind="lost") for frame in range(len(window.session.document.take)))
     window.session.document.set_marks(replace(window.session.document.marks, spans=spans, notes=(Note(0, "", "", ""),)))
     window.session.changed.emit(Change.CURVES)

@@ -48,7 +48,7 @@ def test_keys_and_slider_say_the_same(window: MainWindow) -> None:
     assert window.session.view.believability == 0.8 and not window.actions_by_name["hit_exactly"].isChecked()
 
 
-def test_what_is_not_reached_is_told_with_the_click_that_reaches_it(qtbot: QtBot, window: MainWindow) -> None:
+def test_a_shortfall_is_shown_with_the_button_that_reaches_it(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
     window.brush.believability.setValue(100)
     session.view.choose_lane(WIDTH)
@@ -58,10 +58,10 @@ def test_what_is_not_reached_is_told_with_the_click_that_reaches_it(qtbot: QtBot
     edit, title = session.document.contents().edits[-1], session.document.undo.undoText()
     assert edit.inputs["believability"] == 1.0
     assert window.facts.again_button.isHidden() and not window.facts.reach_button.isHidden()
-    assert "neither this take nor the recordings go further" in window.facts.told.text()
+    assert "neither this take nor the recordings go further" in window.facts.outcome.text()
     assert (
         f"{session.document.controls[150, WIDTH]:.1f} mm of {session.document.asked[150, WIDTH]:.1f} asked"
-        in window.facts.told.text()
+        in window.facts.outcome.text()
     )
     short = abs(session.document.asked[150, WIDTH] - session.document.controls[150, WIDTH])
     believable = session.document.take.weights.copy()
@@ -124,6 +124,6 @@ def test_a_further_curve_gets_a_lane_and_is_dragged(qtbot: QtBot, window: MainWi
 
 def test_a_step_that_asked_for_no_curve_is_not_made_again(qtbot: QtBot, window: MainWindow) -> None:
     told: list[str] = []
-    window.edits.told.connect(told.append)
+    window.edits.message.connect(told.append)
     QTest.keyClick(window, Qt.Key.Key_R, CTRL)
-    assert told == ["the last step asked for no curve"] and window.session.document.undo.count() == 0
+    assert told == ["the last step set no curve"] and window.session.document.undo.count() == 0

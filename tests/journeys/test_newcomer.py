@@ -101,7 +101,7 @@ def test_a_long_note_widens_nothing(qtbot: QtBot, window: MainWindow) -> None:
     QTest.keyClicks(window.notes.entry, "WWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWWW")
     QTest.keyClick(window.notes.entry, Qt.Key.Key_Return)
     qtbot.wait(20)
-    assert window.notes.width() == width
+    assert window.notes.width() <= width  # less by the scroll bar that comes with it
 
 
 def test_what_the_pointer_showed_goes_with_the_tool(qtbot: QtBot, window: MainWindow) -> None:

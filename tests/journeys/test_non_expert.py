@@ -107,7 +107,7 @@ def test_a_drag_changes_curve_weights_and_picture_and_one_undo_restores_them(
     np.testing.assert_array_equal(session.document.take.weights, before[0])
 
 
-def test_a_curve_that_is_dragged_up_and_back_is_as_it_was_and_the_edit_is_told_of_where_it_goes_furthest(
+def test_a_curve_dragged_up_and_back_is_as_it_was_and_the_largest_change_is_shown(
     qtbot: QtBot, window: MainWindow
 ) -> None:
     session = window.session
@@ -116,7 +116,7 @@ def test_a_curve_that_is_dragged_up_and_back_is_as_it_was_and_the_edit_is_told_o
     drag(qtbot, window, LIPS, frame, 15.0)
     assert session.document.curve(LIPS)[frame] > before[frame] + 10.0
     session.view.move_playhead(0)
-    assert window.facts.told.text().endswith(f"(frame {frame:,})")
+    assert window.facts.outcome.text().endswith(f"(frame {frame:,})")
     drag(qtbot, window, LIPS, frame, before[frame] - session.document.curve(LIPS)[frame])
     np.testing.assert_allclose(session.document.curve(LIPS), before, atol=1.0)
 
@@ -134,7 +134,7 @@ def test_play_and_step_by_keys(qtbot: QtBot, window: MainWindow) -> None:
     assert window.session.document.take.lost[window.session.view.playhead]
 
 
-def test_escape_drops_the_drag_under_way(qtbot: QtBot, window: MainWindow) -> None:
+def test_escape_cancels_the_drag(qtbot: QtBot, window: MainWindow) -> None:
     area, start = window.curves.viewport(), on_curve(window, LIPS, 80)
     QTest.mousePress(area, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, start)
     QTest.mouseMove(area, start + QPoint(0, 40))
@@ -164,7 +164,7 @@ def test_a_file_that_cannot_be_read_leaves_the_work_as_it_was(
     take = window.session.document.take
     for name, content in (("a.csv", b""), ("b.csv", b"\x89PNG\r\n\x1a\n" + bytes(200)), ("c.csv", b"hello, world\n")):
         (tmp_path / name).write_bytes(content)
-        with qtbot.waitSignal(window.files.told, timeout=20_000):
+        with qtbot.waitSignal(window.files.message, timeout=20_000):
             window.load(tmp_path / name)
         assert window.notices.isVisible() and name in window.notices.text.text()
         assert "Traceback" not in window.notices.text.text()

@@ -25,7 +25,7 @@ from tests.journeys.conftest import noted
 
 def test_escape_puts_a_notice_away_before_the_selection(window: MainWindow) -> None:
     window.session.view.select((10, 20))
-    window.notices.tell("take.csv is not a take.", "Export it again.")
+    window.notices.warn("take.csv is not a take.", "Export it again.")
     QTest.keyClick(window.curves, Qt.Key.Key_Escape)
     assert not window.notices.isVisible() and window.session.view.selection == (10, 20)
     QTest.keyClick(window.curves, Qt.Key.Key_Escape)
@@ -33,14 +33,14 @@ def test_escape_puts_a_notice_away_before_the_selection(window: MainWindow) -> N
 
 
 def test_the_button_puts_it_away(window: MainWindow) -> None:
-    window.notices.hold("The disk is full.")
+    window.notices.warn_until_solved("The disk is full.")
     QTest.mouseClick(window.notices.dismiss, Qt.MouseButton.LeftButton)
     assert not window.notices.isVisible()
 
 
 def test_a_notice_goes_when_it_was_read_but_not_under_the_pointer(qtbot: QtBot, window: MainWindow) -> None:
     notices = window.notices
-    notices.tell("take.csv is not a take.")
+    notices.warn("take.csv is not a take.")
     assert notices.fading.isActive()
     assert notices.fading.interval() == SHOWN_MS + READ_MS * len(notices.text.text())
     at = QPointF(3, 3)
@@ -52,7 +52,7 @@ def test_a_notice_goes_when_it_was_read_but_not_under_the_pointer(qtbot: QtBot, 
     qtbot.waitUntil(lambda: not notices.isVisible())
 
 
-def test_work_in_danger_is_told_until_it_is_safe(window: MainWindow) -> None:
+def test_a_warning_about_unsafe_work_stays_until_it_is_safe(window: MainWindow) -> None:
     window.keeper.failed.emit("demo.retake could not be written.", "Free some space.")
     assert window.notices.isVisible() and not window.notices.fading.isActive()
     window.keeper.mended.emit("demo.retake could not be written.")
@@ -92,7 +92,7 @@ def test_sound_that_goes_on_after_the_take_is_said(qtbot: QtBot, window: MainWin
     window.session.document.slide("audio", -1.0)
     assert window.session.document.offset_s("audio") == -1.0
     fitting = Audio(np.zeros(round(rate * length_s), np.float32), rate)
-    window.status.tell("")
+    window.status.show_message("")
     window.session.document.slide("audio", None)
     window.session.document.attach_audio(fitting)
     assert window.status["notice"].text() == ""

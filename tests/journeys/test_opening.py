@@ -160,7 +160,7 @@ def test_a_project_that_cannot_be_read_again_leaves_its_work_kept_elsewhere(
         project.write_bytes(b"something else")
 
     monkeypatch.setattr(window.keeper, "release", damaged)
-    with qtbot.waitSignals([window.files.told, window.keeper.kept], timeout=10_000):
+    with qtbot.waitSignals([window.files.message, window.keeper.kept], timeout=10_000):
         window.load(project)
     assert window.session.document.edited and len(window.session.document.marks.notes) == 1
     (left,) = (tmp_path / "unsaved").glob("*.retake")

@@ -81,7 +81,7 @@ def test_a_pinned_smile_arrives_and_leaves_and_one_undo_takes_it_back(qtbot: QtB
     assert session.document.marks.pins == ()
 
 
-def test_dropping_a_pin_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWindow) -> None:
+def test_discarding_a_pin_leaves_the_take_as_it_was(qtbot: QtBot, window: MainWindow) -> None:
     QTest.keyClick(window, Qt.Key.Key_P)
     press(next(iter(window.pins.sliders.values())), Qt.Key.Key_End)
     qtbot.waitUntil(lambda: window.session.document.draft is not None, timeout=20_000)

@@ -109,7 +109,7 @@ def test_copy_and_paste_of_a_range(qtbot: QtBot, window: MainWindow) -> None:
     np.testing.assert_array_equal(session.document.take.weights[224:], session.document.original.weights[224:])
 
 
-def test_smoothing_is_previewed_then_kept_or_dropped(qtbot: QtBot, window: MainWindow) -> None:
+def test_smoothing_is_previewed_then_kept_or_discarded(qtbot: QtBot, window: MainWindow) -> None:
     session = window.session
     QTest.keyClick(window, Qt.Key.Key_S)
     session.view.select((50, 150))

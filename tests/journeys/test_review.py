@@ -117,7 +117,7 @@ def test_a_report_is_written_beside_the_work(
     assert "frames 60 to 79" in text and "as in b.csv" in text and "data:image/png" in text
 
 
-def test_what_cannot_be_compared_is_told_and_nothing_is_lost(
+def test_what_cannot_be_compared_is_reported_and_nothing_is_lost(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "broken.csv").write_text("x")
@@ -127,7 +127,7 @@ def test_what_cannot_be_compared_is_told_and_nothing_is_lost(
     assert window.session.document.undo.count() == 0
 
 
-def test_a_project_of_edits_is_told_apart_from_its_recording(tmp_path: Path) -> None:
+def test_a_project_is_compared_with_its_recording(tmp_path: Path) -> None:
     take = read_take(demo.BUNDLED)
     contents = project.Contents(take, (), 0, project.Marks())
     project.create(tmp_path / "p.retake", contents).close()
@@ -136,7 +136,7 @@ def test_a_project_of_edits_is_told_apart_from_its_recording(tmp_path: Path) -> 
     assert not review(None, tmp_path / "p.retake").comparison.changes
 
 
-def test_a_movie_is_written_beside_the_work_and_tells_how_far_it_is(
+def test_a_movie_is_written_in_the_background_with_progress(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     take = read_take(demo.BUNDLED)

@@ -110,7 +110,7 @@ def drawn(window: MainWindow, *places: QPoint) -> None:
 def test_a_mark_on_the_picture_goes_with_its_note_and_lies_where_it_was_drawn(
     qtbot: QtBot, window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    document, view, face = window.session.document, window.session.view.range, window.preview.face
+    document, view, face = window.session.document, window.session.view, window.preview.face
     view.move_playhead(40)
     settled(qtbot, window)
     plain, camera = face_shown(window), face.camera
@@ -148,7 +148,7 @@ def test_a_mark_on_the_picture_goes_with_its_note_and_lies_where_it_was_drawn(
     settled(qtbot, window)
 
 
-def test_what_is_drawn_without_a_note_is_dropped(qtbot: QtBot, window: MainWindow) -> None:
+def test_what_is_drawn_without_a_note_is_discarded(qtbot: QtBot, window: MainWindow) -> None:
     face = window.preview.face
     press(window, Key.Key_4)
     press(window, Key.Key_D, SHIFT)
@@ -206,7 +206,7 @@ def test_the_line_never_leaves_the_picture() -> None:
     assert wipe.share > 0.0
 
 
-def test_a_note_shows_in_every_lane_and_its_range_is_told_on_the_timeline(qtbot: QtBot, window: MainWindow) -> None:
+def test_a_note_shows_in_every_lane_and_its_range_on_the_timeline(qtbot: QtBot, window: MainWindow) -> None:
     view = window.session.view
     view.select((60, 91))
     view.move_playhead(70)

@@ -71,7 +71,7 @@ def test_what_is_pressed_first_is_seen_with_every_tool(qtbot: QtBot, window: Mai
 @pytest.mark.parametrize("size", [QSize(1280, 720), QSize(1440, 900)])
 def test_bars_and_panels_are_within_the_window(qtbot: QtBot, window: MainWindow, size: QSize) -> None:
     window.resize(size)
-    window.notices.tell("take.csv is not a Live Link Face file.", "Export it from the app as CSV.")
+    window.notices.warn("take.csv is not a Live Link Face file.", "Export it from the app as CSV.")
     settled(qtbot, window)
     for part in (window.status, window.inspector, window.preview, window.timeline, window.notices):
         assert window.rect().contains(QRect(part.mapTo(window, QPoint()), part.size())), part

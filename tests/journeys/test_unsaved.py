@@ -30,7 +30,7 @@ def test_opening_over_unsaved_edits_asks(
     edited = window.session.document.take
     window.load(other)
     assert asked == ["demo.csv has edits that are not saved."]  # before anything is read
-    assert (window.files.opening.path == other) is opens and window.session.document.take is edited
+    assert (window.files.opener.opening.path == other) is opens and window.session.document.take is edited
     if opens:
         qtbot.waitUntil(lambda: window.session.document.path == other, timeout=20_000)
         assert not window.session.document.edited and window.keeper.left_over() == []

@@ -80,7 +80,7 @@ def test_dropped_corrected_saved_and_taken_back(
     settled(qtbot, window)
 
 
-def test_a_fill_says_the_visemes_unless_told_not_to(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
+def test_a_fill_says_the_visemes_unless_switched_off(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
     session = window.session
     (lost,) = session.document.marks.spans
     session.view.select((lost.start, lost.stop))

@@ -112,7 +112,7 @@ class Walk:
         """Let go, save, and check that the file holds every step."""
         if self._pressed is not None:
             self._release()
-        self.wait(lambda: self.window.inference.idle and self.window.files.opening.path is None)
+        self.wait(lambda: self.window.inference.idle and self.window.files.opener.opening.path is None)
         self.check()
         path = self.folder / "walked.retake"
         self.steps = self.window.session.document.undo.count()

@@ -27,7 +27,7 @@ class Tool:
 
     @property
     def busy(self) -> bool:
-        """Whether a gesture is under way."""
+        """Whether a gesture has begun and not ended."""
         return False
 
     def press(self, lane: int, event: QMouseEvent) -> None:
@@ -53,7 +53,7 @@ class Tool:
         """Change the tool's size."""
 
     def cancel(self) -> None:
-        """Drop what is under way."""
+        """Cancel the gesture."""
 
     def refresh(self) -> None:
         """Show the result that has come in."""
@@ -95,7 +95,7 @@ class Stroke(Tool):
             self.done(self.verb, lane, event.position())
 
     def cancel(self) -> None:
-        """Let the curve spring back."""
+        """Cancel the gesture; the curve returns to what it was."""
         if self._lane is not None:
             self._lane = None
             self.panel.inference.cancel()

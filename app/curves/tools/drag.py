@@ -1,4 +1,4 @@
-"""Drag: pull a curve anywhere, and a soft brush bends it."""
+"""The Drag tool: pulls a curve through a soft brush."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ WHEEL_STEP = 1.15  # the radius grows by a notch
 
 
 class DragTool(Stroke):
-    """Pull a curve anywhere; a soft brush bends it and the face follows."""
+    """Pulls a curve anywhere through a soft brush; the face follows."""
 
     cursor = Qt.CursorShape.SizeVerCursor
     verb = "drag"
@@ -22,7 +22,7 @@ class DragTool(Stroke):
     _by = 0.0
 
     def press(self, lane: int, event: QMouseEvent) -> None:
-        """Take hold of the curve at the frame under the pointer."""
+        """Begin to drag the curve at the frame under the pointer."""
         session = self.panel.session
         frame = round(self.panel.frame_at(event.position()))
         if (

@@ -83,9 +83,9 @@ class ScrubTool(Tool):
             self.panel.session.view.move_playhead(round(self.panel.frame_at(event.position())))
 
     def release(self, event: QMouseEvent) -> None:
-        """Let go."""
+        """Cancel the gesture."""
         self._held = False
 
     def cancel(self) -> None:
-        """Let go."""
+        """Cancel the gesture."""
         self._held = False

@@ -66,8 +66,8 @@ class ScaleTool(Tool):
         """Widen the box, or scale by the handle."""
         session, at = self.panel.session, event.position()
         if self._held == "box":
-            frames = sorted((round(self.panel.frame_at(self._pressed)), round(self.panel.frame_at(at)) + 1))
-            session.view.select((frames[0], frames[1]))
+            first, last = sorted((round(self.panel.frame_at(self._pressed)), round(self.panel.frame_at(at))))
+            session.view.select((first, last + 1))
         elif self._held:
             self._scale(at)
         else:

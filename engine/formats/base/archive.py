@@ -48,18 +48,18 @@ def names_in(path: Path) -> set[str]:
         return set()
 
 
-def arrays_of(path: Path, wanted: Iterable[str]) -> dict[str, npt.NDArray[Any]]:
+def arrays_of(path: Path, required: Iterable[str]) -> dict[str, npt.NDArray[Any]]:
     """Return those of the wanted arrays that an npz holds, never an object; raises `FormatError` where it is damaged."""
     require_file(path, at_most=MAX_BYTES)
     try:
         with zipfile.ZipFile(path) as archive:
-            held = [name for name in wanted if f"{name}.npy" in archive.namelist()]
+            present = [name for name in required if f"{name}.npy" in archive.namelist()]
             left = replace(BUDGET, bytes=MAX_BYTES)
-            left.require(path.name, bytes=sum(archive.getinfo(f"{name}.npy").file_size for name in held))
-            for name in held:
+            left.require(path.name, bytes=sum(archive.getinfo(f"{name}.npy").file_size for name in present))
+            for name in present:
                 left = left.spend(path.name, values=_declared(archive, f"{name}.npy", path))
         with np.load(path, allow_pickle=False) as stored:
-            return {name: np.asarray(stored[name]) for name in held}
+            return {name: np.asarray(stored[name]) for name in present}
     except DAMAGED as error:
         raise FormatError(f"{path.name} is damaged.") from error
 

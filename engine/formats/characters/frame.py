@@ -181,13 +181,17 @@ def _size(motions: Mapping[str, Motion]) -> float:
     """
     usual = _usual()
     ratios = []
-    for one, other in combinations([name for name in motions if name in usual], 2):
-        typical = float(np.linalg.norm(usual[one].centre - usual[other].centre))
-        apart = float(np.linalg.norm(motions[one].centre - motions[other].centre))
+    for first, second in combinations([name for name in motions if name in usual], 2):
+        typical = float(np.linalg.norm(usual[first].centre - usual[second].centre))
+        apart = float(np.linalg.norm(motions[first].centre - motions[second].centre))
         if typical > FAR_MM and apart > 0:
             ratios.append(apart / typical)
     if not ratios:
-        ratios = [one.extent / usual[name].extent for name, one in motions.items() if name in usual and one.extent > 0]
+        ratios = [
+            motion.extent / usual[name].extent
+            for name, motion in motions.items()
+            if name in usual and motion.extent > 0
+        ]
     return float(np.median(ratios)) if ratios else float("nan")
 
 
@@ -204,7 +208,7 @@ def _up(motions: Mapping[str, Motion], left: Array) -> str:
 
 def _facing(vertices: Array, motions: Mapping[str, Motion], up: Array, left: Array, size: float) -> tuple[float, bool]:
     """Return how far the face is turned, in degrees as `Frame` has it, and whether the names of its sides are exchanged."""
-    face = np.mean([one.centre for one in motions.values()], axis=0)
+    face = np.mean([motion.centre for motion in motions.values()], axis=0)
     ahead = face - _middle_of_head(vertices, face, size)
     ahead = ahead / max(size * EYES_APART_MM, 1e-300) if np.isfinite(size) else _unit(ahead)
     ahead = ahead + sum((w * motions[name].way for name, w in MOVES_AHEAD.items() if name in motions), np.zeros(3))
@@ -221,7 +225,7 @@ def _without_sides(vertices: Array, motions: Mapping[str, Motion], up: str, size
 
     The face lies in front of the middle of its head and moves as faces do; nothing of that points aside.
     """
-    face = np.mean([one.centre for one in motions.values()], axis=0)
+    face = np.mean([motion.centre for motion in motions.values()], axis=0)
     ahead = _unit(face - _middle_of_head(vertices, face, size))
     rising, coming = (
         sum((weight * motions[name].way for name, weight in table.items() if name in motions), np.zeros(3))
@@ -278,7 +282,7 @@ def _by_height(vertices: Array, up: str) -> float:
 
 
 def _middle_of(motions: Mapping[str, Motion], kinds: tuple[str, ...]) -> Array | None:
-    centres = [one.centre for name, one in motions.items() if name.startswith(kinds)]
+    centres = [motion.centre for name, motion in motions.items() if name.startswith(kinds)]
     return np.mean(centres, axis=0) if centres else None
 
 

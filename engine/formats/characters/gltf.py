@@ -91,14 +91,14 @@ def _piece(mesh: Structure, group: list[Structure], placed: Placed, accessors: A
     first = group[0]
     vertices = accessors.vectors(first["attributes"]["POSITION"]).astype(np.float64)
     triangles = [_triangles(primitive, len(vertices), accessors, path) for primitive in group]
-    held = _bones(first, placed, len(vertices), accessors, path)
+    skinned = _bones(first, placed, len(vertices), accessors, path)
     targets = {}
     for name, target in zip(target_names(mesh, first, accessors), first.get("targets") or [], strict=True):
         if target.get("POSITION") is not None:
             delta = accessors.vectors(target["POSITION"], wanted=len(vertices), what=name[:60])
-            targets[name] = _turned(delta, placed.matrix, held)
-    moved = _turned(vertices, placed.matrix, held)
-    moved += placed.matrix[:3, 3] if held is None else held[:, :3, 3]
+            targets[name] = _turned(delta, placed.matrix, skinned)
+    moved = _turned(vertices, placed.matrix, skinned)
+    moved += placed.matrix[:3, 3] if skinned is None else skinned[:, :3, 3]
     return _Piece(moved, np.concatenate(triangles), targets)
 
 
@@ -116,10 +116,10 @@ def _bones(first: Structure, placed: Placed, vertices: int, accessors: Accessors
     return blended(placed.bones, joints, shares)
 
 
-def _turned(vectors: npt.NDArray[Any], matrix: Array, held: Array | None) -> npt.NDArray[Any]:
+def _turned(vectors: npt.NDArray[Any], matrix: Array, skinned: Array | None) -> npt.NDArray[Any]:
     """Return vectors, (n, 3), turned and scaled by one matrix or by each vertex's own, in their own precision."""
-    if held is not None:
-        return np.asarray(np.einsum("nij,nj->ni", held[:, :3, :3], vectors), vectors.dtype)
+    if skinned is not None:
+        return np.asarray(np.einsum("nij,nj->ni", skinned[:, :3, :3], vectors), vectors.dtype)
     turn = matrix[:3, :3].T.astype(vectors.dtype)
     return vectors if np.array_equal(turn, np.eye(3)) else np.asarray(vectors @ turn)
 

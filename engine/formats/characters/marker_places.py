@@ -247,9 +247,9 @@ def _assigned(
     cost[[place for place, row in enumerate(rows) if int(row) in by_name]] = np.inf
     ours, theirs = linear_sum_assignment(np.minimum(cost, 2 * near[:, None]))
     return {
-        int(rows[one]): (MARKERS[other], float(gaps[one, other]))
-        for one, other in zip(ours, theirs, strict=True)
-        if cost[one, other] <= near[one]
+        int(rows[row]): (MARKERS[column], float(gaps[row, column]))
+        for row, column in zip(ours, theirs, strict=True)
+        if cost[row, column] <= near[row]
     }
 
 

@@ -25,8 +25,8 @@ def write(mesh: MovingMesh, path: Path) -> None:
     except ImportError:
         raise EngineError("USD needs the package usd-core.", "Install it with: pip install 'retake[usd]'.") from None
     with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder) / f"mesh{path.suffix.lower()}"
-        stage = Usd.Stage.CreateNew(str(made))
+        written = Path(folder) / f"mesh{path.suffix.lower()}"
+        stage = Usd.Stage.CreateNew(str(written))
         UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
         UsdGeom.SetStageMetersPerUnit(stage, 1.0)
         stage.SetTimeCodesPerSecond(mesh.fps)
@@ -47,4 +47,4 @@ def write(mesh: MovingMesh, path: Path) -> None:
                 ends = [Gf.Vec3f(*map(float, end)) for end in (placed.min(axis=0), placed.max(axis=0))]
                 extent.Set(Vt.Vec3fArray(ends), frame)
         stage.Save()
-        write_bytes(path, [made.read_bytes()])
+        write_bytes(path, [written.read_bytes()])

@@ -70,12 +70,12 @@ def clock_of(timecodes: Sequence[bytes], fps: float | None = None) -> Clock:
     found = _believed(timecodes) if len(timecodes) > 1 else _alone(timecodes)
     if fps is None:
         return found
-    said = f"Taken as {fps:.6g} fps, as asked" + (
+    sentences = f"Taken as {fps:.6g} fps, as asked" + (
         f"; the timecodes say {found.fps:.6g}." if found.style is not None and len(timecodes) > 1 else "."
     )
     kept = [notice for notice in found.notices if not notice.startswith(("The timecodes make", "One frame", "Taken"))]
     return Clock(
-        fps, found.rows, found.start_s, "as asked", found.style, found.missed, found.odd, (said, *kept), found.fps
+        fps, found.rows, found.start_s, "as asked", found.style, found.missed, found.odd, (sentences, *kept), found.fps
     )
 
 
@@ -209,44 +209,44 @@ def _rate(times: Array, walked: Walked, *, quantum_s: float, step_s: float) -> t
 
 def _said_rate(style: Style, rate: float, measured: float, quantum_s: float) -> list[str]:
     """Say what the timecodes count where that is not what the app writes, and whether their clock is off."""
-    said = []
+    sentences = []
     if style != Style(decimals=style.decimals, digits=style.digits):
-        said.append(f"Taken as {rate:.6g} fps, from {style.described}.")
+        sentences.append(f"Taken as {rate:.6g} fps, from {style.described}.")
     if abs(measured / rate - 1) > 5e-4 and quantum_s < 0.2 / rate:
-        said.append(f"The clock of the file says {measured:.5g} fps; taken as {rate:.6g}, the nearest usual rate.")
-    return said
+        sentences.append(f"The clock of the file says {measured:.5g} fps; taken as {rate:.6g}, the nearest usual rate.")
+    return sentences
 
 
 def _said_odd(odd: int, walked: Walked) -> list[str]:
-    said = []
+    sentences = []
     if odd:
-        said.append(f"{counted(odd, 'timecode')} out of order, placed by the rows beside.")
+        sentences.append(f"{counted(odd, 'timecode')} out of order, placed by the rows beside.")
     if walked.uneven:
         return ["The clock runs unevenly; the rows are taken at even steps."]
     if walked.set_back:
         times = "once" if len(walked.set_back) == 1 else f"{len(walked.set_back)} times"
-        said.append(f"The clock was set back {times}; the rows go on without a gap.")
+        sentences.append(f"The clock was set back {times}; the rows go on without a gap.")
     if walked.pauses:
         longest = max(walked.pauses)
-        said.append(f"A leap of the clock by {longest:,.0f} s was left out; the rows after it follow at once.")
-    return said
+        sentences.append(f"A leap of the clock by {longest:,.0f} s was left out; the rows after it follow at once.")
+    return sentences
 
 
 def _said_missed(rows: npt.NDArray[np.int64], fps: float) -> list[str]:
     """Say what became of frames without a row: a few are interpolated, long gaps are lost."""
     gone = lost_frames(rows, np.zeros(len(rows), bool), fps)
     missed, lost = int(rows[-1]) + 1 - len(rows) - int(gone.sum()), int(gone.sum())
-    said = []
+    sentences = []
     if missed:
-        said.append(
+        sentences.append(
             f"{counted(missed, 'missed frame')} {plural(missed, 'was', 'were')} filled in from the frames beside."
         )
     if lost:
         gaps = len(runs(gone))
         length_s = f"{lost / fps:.2f} s" if lost < 10 * fps else f"{lost / fps:,.0f} s"
         where = f"a gap of {length_s}" if gaps == 1 else f"{gaps} gaps, {length_s} in all"
-        said.append(f"The file has no rows over {where}; the frames there are marked as lost.")
-    return said
+        sentences.append(f"The file has no rows over {where}; the frames there are marked as lost.")
+    return sentences
 
 
 def timecodes_between(

@@ -154,22 +154,24 @@ def _read_zip(path: Path, report: Callable[[float], None] | None, reading: Readi
 
 def _checked(take: Take, parts: Parts, target_fps: float | None, reading: Reading) -> Take:
     """Return a take with what is to be said of its files, and with the target rate where its clock tells none."""
-    said = []
+    sentences = []
     name = _path(parts.table).name
     if parts.table == parts.calibrated and parts.raw is not None:
-        said.append(f"{name}, the calibrated file of the take, was opened; the raw one lies beside it.")
+        sentences.append(f"{name}, the calibrated file of the take, was opened; the raw one lies beside it.")
     elif parts.table == parts.raw:
         other = f"; {_path(parts.calibrated).name} is the calibrated one" if parts.calibrated is not None else ""
-        said.append(f"{name} is the raw file of the take{other}.")
+        sentences.append(f"{name} is the raw file of the take{other}.")
     if target_fps is not None and reading.fps is None:
         assumed = any("row by row" in notice or notice.startswith(("One frame", "The rows")) for notice in take.notices)
         if assumed and take.fps == FALLBACK_FPS:
             kept = [notice for notice in take.notices if "row by row" not in notice]
-            notices = (f"Taken as {target_fps:g} fps, from {CARD}; the timecodes make no sense.", *kept, *said)
+            notices = (f"Taken as {target_fps:g} fps, from {CARD}; the timecodes make no sense.", *kept, *sentences)
             return replace(take, fps=target_fps, notices=notices)
         if abs(target_fps / take.fps - 1) > SAME_RATE:
-            said.append(f"{CARD} says {target_fps:g} fps, the timecodes {take.fps:.5g}; the timecodes are believed.")
-    return replace(take, notices=(*take.notices, *said))
+            sentences.append(
+                f"{CARD} says {target_fps:g} fps, the timecodes {take.fps:.5g}; the timecodes are believed."
+            )
+    return replace(take, notices=(*take.notices, *sentences))
 
 
 # --- what lies together
@@ -180,10 +182,10 @@ def _parts(names: Iterable[str], where: str, like: str | None = None) -> Parts:
     listed = [name for name in names if not _path(name).name.startswith((".", "__MACOSX"))]
     listed = [name for name in listed if "__MACOSX" not in name and not name.endswith("/")]
     tables = sorted((name for name in listed if name.lower().endswith(".csv")), key=lambda name: name.casefold())
-    wanted = _stem(like) if like is not None and _path(like).name.lower() != CARD else None
+    like_stem = _stem(like) if like is not None and _path(like).name.lower() != CARD else None
     groups: dict[tuple[str, str], list[str]] = {}
     for name in tables:
-        if wanted is None or _stem(name) == wanted:
+        if like_stem is None or _stem(name) == like_stem:
             groups.setdefault((str(_path(name).parent), _stem(name)), []).append(name)
     known = {key: group for key, group in groups.items() if any(_kind(name) in (CALIBRATED, RAW) for name in group)}
     groups = known or groups

@@ -31,8 +31,8 @@ class Imported:
         """Return where a rate is from, in a few words."""
         if abs(fps / self.clock.fps - 1) < SAME:
             return self.clock.reason
-        said = "no rate that can be believed" if self.clock.reason == "assumed" else f"{self.clock.fps:.5g}"
-        return f"{'as asked' if chosen.fps is not None else 'from take.json'}; the timecodes say {said}"
+        stated = "no rate that can be believed" if self.clock.reason == "assumed" else f"{self.clock.fps:.5g}"
+        return f"{'as asked' if chosen.fps is not None else 'from take.json'}; the timecodes say {stated}"
 
     def sides_reason(self, *, swapped: bool) -> str:
         """Return what the motion tells of the sides that a take was read with, in a few words."""

@@ -28,7 +28,7 @@ def table(
     `columns` are the names in the header, and the cells that hold numbers; the values of others are 0.
     A row whose count is 0 is a lost frame, however many cells follow: spreadsheets and pandas fill them up.
     """
-    header, wanted = columns
+    header, chosen = columns
     # a lost row of four bytes is as many numbers as the header has columns
     budget = replace(BUDGET, values=max(FEW_VALUES, len(content)))
     timecodes: list[bytes] = []
@@ -40,7 +40,7 @@ def table(
         end = content.find(b"\n", min(first + BLOCK_BYTES, stop), stop) % (stop + 1)
         rows = len(timecodes) + content.count(b"\n", first, end) + 1
         budget.require(path.name, values=rows * len(header))
-        block = _block(content[first:end] + b"\n", (len(header), wanted), len(timecodes) + 2, path, last=end == stop)
+        block = _block(content[first:end] + b"\n", (len(header), chosen), len(timecodes) + 2, path, last=end == stop)
         timecodes += block[0]
         values.append(block[1])
         lost.append(block[2])
@@ -67,7 +67,7 @@ def _end(content: bytes, first: int) -> int:
 
 def _block(block: bytes, columns: tuple[int, Places], row: int, path: Path, *, last: bool) -> Rows:
     """Split whole rows of text, the first of them the row `row` of the file, like `table`."""
-    cells, wanted = columns
+    cells, chosen = columns
     text = np.frombuffer(block, np.uint8)
     ends = np.flatnonzero((text == COMMA) | (text == NEWLINE))
     starts = np.concatenate([[0], ends[:-1] + 1])
@@ -84,16 +84,16 @@ def _block(block: bytes, columns: tuple[int, Places], row: int, path: Path, *, l
                 f"{path.name} has {counts[index]} cells in row {row + index} where its header has {cells}.",
                 "The file may be cut off or damaged." if last and index == len(counts) - 1 else "",
             )
-    numbers = (opening[~lost, None] + wanted).ravel()
+    numbers = (opening[~lost, None] + chosen).ravel()
     values = np.zeros((len(counts), cells - 2))
     try:
-        values[np.ix_(~lost, wanted - 2)] = floats(text, starts[numbers], ends[numbers]).reshape(-1, len(wanted))
+        values[np.ix_(~lost, chosen - 2)] = floats(text, starts[numbers], ends[numbers]).reshape(-1, len(chosen))
     except ValueError as error:
-        seen, column = divmod(error.args[0], len(wanted))
+        seen, column = divmod(error.args[0], len(chosen))
         cell = numbers[error.args[0]]
         shown = block[starts[cell] : ends[cell]].rstrip(b"\r")[:20].decode("utf-8", "replace")
         raise FormatError(
-            f"{path.name} has {shown!r} for a number in row {row + np.flatnonzero(~lost)[seen]}, column {wanted[column] + 1}."
+            f"{path.name} has {shown!r} for a number in row {row + np.flatnonzero(~lost)[seen]}, column {chosen[column] + 1}."
         ) from None
     return timecodes, values, lost, starts[opening]
 

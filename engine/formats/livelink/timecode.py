@@ -255,14 +255,14 @@ def _base(fields: Array) -> int | None:
         return None
     usual = middle(inner)
     usual = float(inner[np.abs(inner / usual - 1) < 0.6].mean())
-    held = counts[before] + usual - counts[before + 1]
-    votes = {base: int((np.abs(held - base) < max(0.5 * min(usual, 0.05 * base), 0.45)).sum()) for base in BASES}
+    lengths = counts[before] + usual - counts[before + 1]
+    votes = {base: int((np.abs(lengths - base) < max(0.5 * min(usual, 0.05 * base), 0.45)).sum()) for base in BASES}
     best: int = max(BASES, key=lambda base: votes[base])  # the app's own where there is a draw
-    if 2 * votes[best] > len(held):
+    if 2 * votes[best] > len(lengths):
         return best
-    counted: Counter[int] = Counter(int(each) for each in np.round(held))
+    counted: Counter[int] = Counter(int(each) for each in np.round(lengths))
     odd, many = counted.most_common(1)[0]
-    sure = many >= 3 and many > max(0.6 * len(held), votes[best]) and FEWEST <= odd <= MOST and counts.max() <= odd
+    sure = many >= 3 and many > max(0.6 * len(lengths), votes[best]) and FEWEST <= odd <= MOST and counts.max() <= odd
     if sure and abs(odd - APP_BASE) > 2 * usual:
         uneven = float((inner > 1.5 * np.median(inner)).mean()) > 0.1  # cut off to counts that a rate does not divide
         return odd + 1 if uneven and odd + 1 in BASES else odd

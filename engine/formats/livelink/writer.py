@@ -198,8 +198,8 @@ def _inserted(take: Take, origin: Origin) -> Places:
         wrong = told_lost != take.lost[absent]
         if len(seen):
             for curves in (take.weights, take.rotations):
-                told = np.stack([np.interp(absent, seen, curve) for curve in curves[seen].T], axis=1)
-                wrong |= ~take.lost[absent] & (np.abs(told - curves[absent]) > SAME).any(axis=1)
+                interpolated = np.stack([np.interp(absent, seen, curve) for curve in curves[seen].T], axis=1)
+                wrong |= ~take.lost[absent] & (np.abs(interpolated - curves[absent]) > SAME).any(axis=1)
         now = np.isin(gap, gap[wrong])
         if not now.any():
             break

@@ -28,10 +28,10 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
         notices.append(f"The file names {len(given)} of its {counted(count, 'point')}: the others go by their place.")
     labels, doubled = each_once([*given[:count], *[""] * (count - len(given))])
     texts = content.parameters.get(("POINT", "UNITS"), Parameter()).texts
-    said = texts[0].lower() if texts and texts[0] else "mm"
-    scale = TO_MM.get(unit or said)
+    stated = texts[0].lower() if texts and texts[0] else "mm"
+    scale = TO_MM.get(unit or stated)
     if scale is None:
-        raise FormatError(f"{path.name} is in the unit {said[:20]!r}.", "Retake reads mm, cm and m.")
+        raise FormatError(f"{path.name} is in the unit {stated[:20]!r}.", "Retake reads mm, cm and m.")
     seen = np.isfinite(positions).all(axis=2) & ~(content.residuals < 0) & ~(positions == 0).all(axis=2)
     placed = np.where(seen[..., None], positions, np.nan)
     if (np.abs(placed) > FARTHEST_MM).any():

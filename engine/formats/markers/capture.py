@@ -85,12 +85,12 @@ def each_once(names: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
         seen.add(name)
         found.append(name)
     count, named = len(doubled), plural(len(doubled), "has", "have")
-    said = (
+    sentence = (
         f"{counted(count, 'marker')} {named} a name that another has too, and got a number: {doubled[0][:40]}."
         if doubled
         else ""
     )
-    return tuple(found), (said,) if said else ()
+    return tuple(found), (sentence,) if sentence else ()
 
 
 def unit_by_size(positions: Array) -> tuple[str, str]:

@@ -42,8 +42,8 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
     exported = heading_of(cells)
     header = list(exported.cells) if exported else cells[0]
     start = exported.rows if exported else 1
-    given, columns, said = _columns(header, path)
-    said = said or (exported.unit if exported else None)
+    given, columns, stated = _columns(header, path)
+    stated = stated or (exported.unit if exported else None)
     names, doubled = each_once(given)
     if len(lines) <= start:
         raise FormatError(f"{path.name} has a header but no frames.")
@@ -54,14 +54,14 @@ def read(path: Path, *, unit: str | None = None, fps: float | None = None) -> Ma
         raise FormatError(f"{path.name} holds no frame in which a marker was seen.")
     positions[~np.isfinite(positions).all(axis=2)] = np.nan
     notices = [*doubled]
-    if unit is None and said is None:
-        said, notice = unit_by_size(positions[np.isfinite(positions).any(axis=(1, 2))])
+    if unit is None and stated is None:
+        stated, notice = unit_by_size(positions[np.isfinite(positions).any(axis=(1, 2))])
         notices.append(notice)
     rate = fps or (exported.fps if exported else None) or _rate(header, table)
     if rate is None:
         rate = FALLBACK_FPS
         notices.append(f"The file has no times: taken as {FALLBACK_FPS:g} fps.")
-    return Markers(positions * TO_MM[unit or said or "mm"], names, rate, path.name, tuple(notices))
+    return Markers(positions * TO_MM[unit or stated or "mm"], names, rate, path.name, tuple(notices))
 
 
 def _plain(row: bytes, separator: str) -> bytes:

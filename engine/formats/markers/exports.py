@@ -68,12 +68,12 @@ def _under(lines: Sequence[Sequence[str]], row: int, places: Sequence[int]) -> H
 
 def _qualisys(lines: Sequence[Sequence[str]]) -> Heading:
     """Return the heading of a TSV file of Qualisys, with or without a line of columns."""
-    said = {line[0].strip().lower(): line[1:] for line in lines if line}
-    names = [name.strip() for name in said["marker_names"] if name.strip()]
+    fields = {line[0].strip().lower(): line[1:] for line in lines if line}
+    names = [name.strip() for name in fields["marker_names"] if name.strip()]
     last = max(row for row, line in enumerate(lines) if line and re.match("[A-Za-z]", line[0].strip()))
     timed = lines[last][0].strip().lower() == "frame"
     coordinates = [f"{name}_{axis}" for name in names for axis in AXES]
-    rate = said.get("frequency") or [""]
+    rate = fields.get("frequency") or [""]
     return Heading((*(("", "Time") if timed else ()), *coordinates), last + 1, "mm", _number(rate[0]))
 
 

@@ -11,13 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from engine.controls import CONTROL_INDEX, bundled_measurer
+from engine.controls import CONTROL_INDEX, CONTROLS, bundled_measurer
 from engine.editing import Dragger
 from engine.errors import EngineError
+from engine.extended import bundled_face
 from engine.lab.corpus import Piece, data_folder, load_takes, pieces_of, split
 from engine.lab.evaluate import metrics
 from engine.lab.evaluate.baselines import NAMES
 from engine.lab.evaluate.baselines.nearest import Nearest
+from engine.lab.evaluate.intervals import intervals_of
 from engine.regress import infer
 from engine.regress.areas import AREAS
 from engine.take import MODEL_FPS, Array, Take
@@ -39,12 +41,14 @@ class Known:
     ----------
     kept : (frames, 52) weights of the shapes that no method makes, the others zero
     controls : (frames, 8) mm, as recorded, whatever is asked instead
+    every : (frames, 16), these and the extended ones, as recorded
     weights : (frames, 52) as recorded, for a method that edits them
     whole_face : whether they animate more than the mouth
     """
 
     kept: Array
     controls: Array
+    every: Array
     weights: Array
     whole_face: bool
 
@@ -62,18 +66,27 @@ def pieces_to_measure(data: Path | None) -> list[Piece]:
 def methods(report: Report) -> dict[str, Method]:
     """Return every method by row name; those that need the recorded takes only where these are.
 
-    `full` is the networks alone, and knows the take that is edited: what its controls do there is not held to be too much.
-    Without that knowledge, from curves alone, it is `full_of_curves`; the rows of others are of curves alone.
+    Ours know where the eyes look, which no edit of these curves moves; those named `_16` are given the extended controls
+    of the take too. `full` knows what the curves of the take did before the edit, and does not hold that to be too much;
+    `alone` is the same without what is done for contacts once the networks have spoken.
     """
     ours = infer.bundled()
     found: dict[str, Method] = {
-        "regressor": lambda controls, _: ours.infer(controls, full=False),
+        "regressor": lambda controls, take: ours.infer(controls, full=False, kept=take.kept),
         "full": full(ours),
         "full_of_curves": lambda controls, take: ours.infer(controls, kept=take.kept),
-        "full_without_contacts": lambda controls, take: ours.infer(controls, original=take.controls, land=False),
+        "alone": lambda controls, take: ours.infer(controls, kept=take.kept, original=take.controls, land=False),
+        "regressor_16": lambda controls, take: ours.infer(_with_extended(controls, take), full=False, kept=take.kept),
+        "full_16": lambda controls, take: ours.infer(
+            _with_extended(controls, take), kept=take.kept, original=take.every
+        ),
     }
     for name in NAMES:
-        found[name] = of_controls(importlib.import_module(f"engine.lab.evaluate.baselines.{name}").load().infer)
+        baseline = importlib.import_module(f"engine.lab.evaluate.baselines.{name.removesuffix('_16')}")
+        if name.endswith("_16"):
+            found[name] = _of_sixteen(baseline.load(every=True).infer)
+        else:
+            found[name] = of_controls(baseline.load().infer)
     try:
         found["nearest"] = of_controls(Nearest(split(data_folder())[0]).infer)
     except EngineError:
@@ -84,6 +97,15 @@ def methods(report: Report) -> dict[str, Method]:
 def full(ours: infer.Regressor) -> Method:
     """Return the full system of networks, which knows the take."""
     return lambda controls, take: ours.infer(controls, kept=take.kept, original=take.controls)
+
+
+def _with_extended(controls: Array, take: Known) -> Array:
+    """Return asked curves, (frames, 8), and beside them the extended ones of the take."""
+    return np.concatenate([controls, take.every[:, controls.shape[1] :]], axis=1)
+
+
+def _of_sixteen(infer: Callable[[Array], Array]) -> Method:
+    return lambda controls, take: infer(_with_extended(controls, take))
 
 
 def editor(controls: Array, take: Known) -> Array:
@@ -104,7 +126,8 @@ def known_of(piece: Piece) -> Known:
     kept = np.array(piece.weights)
     for area in AREAS:
         kept[:, area.shape_columns] = 0.0
-    return Known(kept, bundled_measurer().measure(piece.weights), piece.weights, piece.whole_face)
+    every = bundled_face().measure(piece.weights)
+    return Known(kept, every[:, : len(CONTROLS)], every, piece.weights, piece.whole_face)
 
 
 def played(method: Method, piece: Piece) -> Array:
@@ -125,15 +148,23 @@ def table(data: Path | None, report: Report) -> list[Row]:
     """Return one row a method: mean squared error of each area, closures kept and invented.
 
     `closure_tpr_*` and `closure_fpr_*` are means over the thresholds `MOUTH_MM` and `EYES_MM`; a rate is null where the
-    takes have no closure at all, an error where they do not animate the area.
+    takes have no closure at all, an error where they do not animate the area. `*_low` and `*_high` are the bounds of 95 of
+    100 draws of as many stretches of ten seconds as the takes have.
     """
     pieces = pieces_to_measure(data)
-    return [{"method": name} | figures_of(method, pieces) for name, method in methods(report).items()]
+    return [{"method": name} | figures_of(method, pieces, intervals=True) for name, method in methods(report).items()]
 
 
-def figures_of(method: Method, pieces: Sequence[Piece]) -> Row:
-    """Return the metrics of one row of `table`."""
+def figures_of(method: Method, pieces: Sequence[Piece], *, intervals: bool = False) -> Row:
+    """Return the metrics of one row of `table`, with their intervals or without."""
     made = [played(method, piece) for piece in pieces]
+    figures = _measured(made, pieces)
+    if intervals:
+        figures |= intervals_of(_measured, made, pieces)
+    return figures
+
+
+def _measured(made: Sequence[Array], pieces: Sequence[Piece]) -> Row:
     faces = [index for index, piece in enumerate(pieces) if piece.whole_face]
     figures: Row = {}
     for area in AREAS:

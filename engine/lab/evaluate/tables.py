@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from engine.errors import EngineError
-from engine.lab.evaluate import regress, regress_edits, regress_figures, regress_levers, regress_takes
+from engine.lab.evaluate import regress, regress_edits, regress_figures, regress_levers, regress_people
 from engine.lab.evaluate.clean import figures as clean_figures
 from engine.lab.evaluate.clean import table as clean
 from engine.lab.evaluate.controls import figures as controls_figures
@@ -84,7 +84,9 @@ TABLES: tuple[Table, ...] = (
         edits.table,
         edits_figures.figures,
     ),
-    Table("regress_takes", "The regressor on each recorded take, trained on all others", regress_takes.table),
+    Table(
+        "regress_people", "The regressor and its baselines on each person, trained on all others", regress_people.table
+    ),
     Table("regress_levers", "What each augmentation and loss term does for the regressor", regress_levers.table),
     Table(
         "flags",

@@ -43,11 +43,11 @@ LOWER: npt.NDArray[np.bool_] = np.array([name.startswith(("jaw", "mouth", "cheek
 def augment(pieces: Sequence[Array], levers: Levers, rng: np.random.Generator) -> list[Array]:
     """Return the pieces, (frames, 52) each, followed by `levers.copies` variants of each or of each stretch of it,
     all within 0..1."""
-    made = list(pieces)
+    result = list(pieces)
     for piece in pieces:
         for _ in range(levers.copies):
-            made += [_variant(part, pieces, levers, rng) for part in _stretches(piece, levers.stretch)]
-    return made
+            result += [_variant(part, pieces, levers, rng) for part in _stretches(piece, levers.stretch)]
+    return result
 
 
 def _stretches(piece: Array, frames: int) -> list[Array]:

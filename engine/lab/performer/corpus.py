@@ -31,7 +31,7 @@ def random_script(rng: np.random.Generator, syllables: int = 60) -> Script:
 def synthetic_performances(minutes: float, *, seed: int) -> list[Array]:
     """Return weights, (frames, 52) each, of nonsense performances of the given length in all."""
     rng = np.random.default_rng(seed)
-    made: list[Array] = []
-    while sum(len(weights) for weights in made) < minutes * 60 * 30:
-        made.append(perform(random_script(rng)).weights)
-    return made
+    result: list[Array] = []
+    while sum(len(weights) for weights in result) < minutes * 60 * 30:
+        result.append(perform(random_script(rng)).weights)
+    return result

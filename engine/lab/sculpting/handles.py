@@ -108,8 +108,8 @@ def _laplacian(head: Sculpture) -> sparse.csr_array:
     ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     ends = np.unique(np.sort(ends, axis=1), axis=0)
     weight = 1.0 / np.maximum(np.linalg.norm(head.skin[ends[:, 0]] - head.skin[ends[:, 1]], axis=1), 0.03)
-    joined = sparse.coo_array((weight, (ends[:, 0], ends[:, 1])), shape=(count, count))
-    joined = sparse.csr_array(joined + joined.T)
+    one_way = sparse.coo_array((weight, (ends[:, 0], ends[:, 1])), shape=(count, count))
+    joined = sparse.csr_array(one_way + one_way.T)
     return sparse.csr_array(sparse.diags_array(np.asarray(joined.sum(axis=1)).ravel()) - joined)
 
 

@@ -110,8 +110,8 @@ def followed(head: Sculpture, moved: Array, points: Array) -> Array:
     """Return the motion of points that lie on the skin, (n, 3): the mean of the nearest vertices, nearer ones more."""
     skin = len(head.skin)
     away, nearest = cKDTree(head.skin).query(points, k=NEIGHBOURS)
-    weight = 1.0 / (away + 0.05)
-    return np.asarray(np.einsum("nk,nkx->nx", weight / weight.sum(axis=1, keepdims=True), moved[:skin][nearest]))
+    weight = 1.0 / (np.asarray(away) + 0.05)
+    return np.asarray(np.einsum("nk,nkx->nx", weight / np.sum(weight, axis=1, keepdims=True), moved[:skin][nearest]))
 
 
 def move_lids(head: Sculpture, closed: float = 0.0, raise_upper: float = 0.0, raise_lower: float = 0.0) -> Array:

@@ -38,11 +38,11 @@ def read_lips(weights: Array, *, fps: float) -> np.ndarray:
     poses, classes = _poses()
     faces = weights[:, _COLUMNS]
     away = (faces**2).sum(axis=1)[:, None] - 2 * faces @ poses.T + (poses**2).sum(axis=1)
-    said = classes[np.argmin(away, axis=1)]
+    present = classes[np.argmin(away, axis=1)]
     lips = bundled_measurer().measure(weights)[:, CONTROL_INDEX["lips_vertical"]]
     for start, stop in runs(lips < CLOSED_MM):
-        brief = stop - start <= BILABIAL_S * fps and start > 0 and stop < len(said)
-        said[start:stop] = _MBP if brief else _SIL
-    lone = (said[:-2] == said[2:]) & (said[1:-1] != _MBP)
-    said[1:-1][lone] = said[:-2][lone]
-    return np.asarray(said)
+        brief = stop - start <= BILABIAL_S * fps and start > 0 and stop < len(present)
+        present[start:stop] = _MBP if brief else _SIL
+    lone = (present[:-2] == present[2:]) & (present[1:-1] != _MBP)
+    present[1:-1][lone] = present[:-2][lone]
+    return np.asarray(present)

@@ -23,12 +23,12 @@ SLIDER = "mouthSmileLeft"
 
 def measure() -> list[Speed]:
     """Return the figures; the sparse solve of the assembled system runs once, in the same run."""
-    basis, source, held = _problem(FRAMES)
-    fast_ms = percentile_ms(lambda _: _solve(basis, source, held), 20, percentile=50.0)
+    basis, source, fixed = _problem(FRAMES)
+    fast_ms = percentile_ms(lambda _: _solve(basis, source, fixed), 20, percentile=50.0)
     began = time.perf_counter()
-    plain = _sparse(basis, source, held)
+    plain = _sparse(basis, source, fixed)
     sparse_ms = (time.perf_counter() - began) * 1e3
-    difference = float(np.abs(plain - _solve(basis, source, held)).max())
+    difference = float(np.abs(plain - _solve(basis, source, fixed)).max())
     per_frame = [_long_ms(frames) / frames * 1e3 for frames in LENGTHS]
     return [
         Speed("spacetime_1500x50_ms", fast_ms, "ms", 25.0),
@@ -44,21 +44,21 @@ def measure() -> list[Speed]:
 def _problem(frames: int) -> tuple[Array, Array, Mask]:
     rng = np.random.default_rng(0)
     basis = rng.normal(size=(3 * MARKERS, SHAPE_COUNT))
-    held = np.zeros((frames, SHAPE_COUNT), bool)
-    held[[0, -1]] = True
-    return basis, rng.normal(size=(frames, 3 * MARKERS)), held
+    fixed = np.zeros((frames, SHAPE_COUNT), bool)
+    fixed[[0, -1]] = True
+    return basis, rng.normal(size=(frames, 3 * MARKERS)), fixed
 
 
-def _solve(basis: Array, source: Array, held: Mask) -> Array:
+def _solve(basis: Array, source: Array, fixed: Mask) -> Array:
     system = System(basis, len(source), from_shapes(basis), ALPHA)
-    return MovementMatcher(system, held).solve(source)
+    return MovementMatcher(system, fixed).solve(source)
 
 
-def _sparse(basis: Array, source: Array, held: Mask) -> Array:
+def _sparse(basis: Array, source: Array, fixed: Mask) -> Array:
     """Solve the assembled system at rest in the held frames, (SLS12 eq. 5): the plain way, in its banded order."""
     frames, prior = len(source), from_shapes(basis)
     path = sparse.csr_array(np.diff(sparse.eye_array(frames).toarray(), axis=0))
-    free = np.flatnonzero(~held.any(axis=1))
+    free = np.flatnonzero(~fixed.any(axis=1))
     laplacian = sparse.csc_array(path.T @ path)[free][:, free]
     every = sparse.eye_array(len(free))
     system = System(basis, frames, prior, ALPHA)
@@ -84,13 +84,13 @@ def _slider_ms(frames: int) -> float:
 def _long_ms(frames: int, rounds: int = 3) -> float:
     """Return the shortest time of a whole solve of a take of any length."""
     basis, _, _ = _problem(2)
-    held = np.zeros((frames, SHAPE_COUNT), bool)
-    held[[0, -1]] = True
+    fixed = np.zeros((frames, SHAPE_COUNT), bool)
+    fixed[[0, -1]] = True
     right = np.ones((frames, SHAPE_COUNT))
     system = System(basis, frames, from_shapes(basis), ALPHA)
     spent = []
     for _ in range(rounds):
         began = time.perf_counter()
-        MovementMatcher(system, held).settle(right)
+        MovementMatcher(system, fixed).settle(right)
         spent.append(time.perf_counter() - began)
     return min(spent) * 1e3

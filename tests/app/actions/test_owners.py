@@ -17,11 +17,11 @@ class Second:
     def field(self) -> None: ...
 
 
-def test_the_first_that_has_such_a_method_carries_an_action_out() -> None:
+def test_an_action_belongs_to_the_first_owner_with_its_method() -> None:
     owners = First(), Second()
     assert owners_of(("both", "field"), owners) == {"both": owners[0], "field": owners[1]}
 
 
-def test_an_action_that_nobody_carries_out_is_found_at_the_start() -> None:
+def test_an_action_without_an_owner_is_found_at_the_start() -> None:
     with pytest.raises(LookupError, match="fly"):
         owners_of(("fly",), (First(), Second()))

@@ -91,7 +91,7 @@ def test_mistakes_get_one_sentence(
     assert not (tmp_path / "out.npz").exists()
 
 
-def test_a_mesh_of_few_vertices_is_driven_by_few_points_and_told_so(
+def test_a_mesh_of_few_vertices_is_driven_by_few_points_with_a_notice(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     mesh, points, out = tmp_path / "few.obj", tmp_path / "points.csv", tmp_path / "out.npz"

@@ -81,7 +81,7 @@ def test_no_command_ignores_a_number_that_is_none(tmp_path: Path, line: list[str
     assert capsys.readouterr().err.count("\n") == 1 and not list(tmp_path.iterdir())
 
 
-def test_a_curve_from_a_file_that_asks_for_nothing_is_refused(tmp_path: Path, capsys) -> None:
+def test_a_curve_file_without_targets_is_refused(tmp_path: Path, capsys) -> None:
     curve, out = tmp_path / "curve.txt", tmp_path / "out.csv"
     for text in ("nan " * 20, "3 " * 19 + "inf"):
         curve.write_text(text)

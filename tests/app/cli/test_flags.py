@@ -32,7 +32,7 @@ def test_flags_go_to_the_screen_or_to_a_file(tmp_path: Path, capsys: pytest.Capt
     assert "1 flag;" in capsys.readouterr().out
 
 
-def test_what_should_meet_is_told_by_visemes_and_by_the_original(
+def test_expected_contacts_come_from_visemes_and_the_original(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     take = read_take(demo.BUNDLED)
@@ -50,7 +50,7 @@ def test_what_should_meet_is_told_by_visemes_and_by_the_original(
     assert [row for row in rows(capsys.readouterr().out) if row["kind"] == "open"]
 
 
-def test_a_project_tells_what_was_asked_and_not_reached(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_project_lists_targets_that_were_not_reached(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     take = read_take(demo.BUNDLED)
     asked = np.full((5, len(ALL_CONTROLS)), np.nan)
     asked[:, 0] = 60.0
@@ -74,7 +74,7 @@ def test_bad_input_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture
         assert said.count("\n") == 1 and "Traceback" not in said
 
 
-def test_the_sound_tells_that_a_take_is_too_short(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_sound_shows_that_a_take_is_too_short(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     take = read_take(demo.BUNDLED)
     sound = tmp_path / "sound.wav"
     soundfile.write(sound, np.zeros(round(8_000 * (take.duration_s + 1.0))), 8_000)

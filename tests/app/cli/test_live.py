@@ -108,7 +108,7 @@ def test_nobody_but_this_computer_is_heard_unless_asked(capsys: pytest.CaptureFi
     assert cli.run(["live", "--port", "0", "--seconds", "0", "--bind", ""]) == 2
 
 
-def test_where_nothing_was_heard_no_latency_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_packets_no_latency_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.run(["live", "--port", "0", "--seconds", "0.05"]) == 0
     told = capsys.readouterr().out
     assert "0 frames, none dropped" in told and "p95" not in told

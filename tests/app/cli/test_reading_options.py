@@ -50,12 +50,12 @@ def options(name: str) -> set[str]:
 
 
 @pytest.mark.parametrize("name", READING)
-def test_every_command_that_reads_a_take_can_be_told_how(name: str) -> None:
+def test_every_command_that_reads_a_take_has_the_reading_options(name: str) -> None:
     assert {"--fps", "--sides"} <= options(name)
 
 
 @pytest.mark.parametrize("name", WRITING)
-def test_every_command_that_writes_a_take_can_be_told_how(name: str) -> None:
+def test_every_command_that_writes_a_take_has_the_writing_options(name: str) -> None:
     assert "--write-sides" in options(name)
 
 

@@ -47,7 +47,7 @@ def test_changes_and_flags_as_one_json_object(edited: Path, capsys: pytest.Captu
     assert [flag["kind"] for flag in told["new_flags"]] == ["spike"]
 
 
-def test_check_tells_a_pipeline_by_its_exit_code(
+def test_check_reports_to_a_pipeline_by_its_exit_code(
     edited: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.run(["check", str(edited), "--json"]) == 1
@@ -105,7 +105,7 @@ def test_flags_and_notes_are_written_for_people_and_for_editors(edited: Path, tm
     assert json.loads((tmp_path / "found.json").read_text())["flags"][0]["kind"]
 
 
-def test_takes_of_two_people_are_told_apart_and_the_report_is_written(
+def test_takes_of_two_people_are_distinguished_and_the_report_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     take = read_take(demo.BUNDLED)

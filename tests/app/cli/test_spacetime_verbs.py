@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app import cli
+from engine.assets import SECOND_HEAD
 from engine.character import BUNDLED, bundled, save
 from engine.editing import Performance
 from engine.formats import labels, read_take, write_take
@@ -227,9 +228,21 @@ def test_what_a_head_cannot_do_is_not_written_as_its_own(tmp_path: Path, capsys:
 
 
 @pytest.mark.parametrize("command", [["retarget"], ["drive", "--mesh", "head.obj"]])
-def test_an_ending_that_cannot_be_written_is_told_before_anything_is_read(
+def test_an_ending_that_cannot_be_written_is_refused_before_anything_is_read(
     command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.run([*command, "no_such_take.csv", "-o", str(tmp_path / "t.txt")]) == 2
     said = capsys.readouterr().err
     assert "t.txt is not a kind of file" in said or "t.txt has not an ending" in said
+
+
+def test_the_second_bundled_head_is_a_target_by_its_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    take = read_take(demo.BUNDLED)
+    write_take(Take(take.weights[60:64], take.fps), tmp_path / "take.csv")
+    shutil.copy(SECOND_HEAD, tmp_path / "copy.npz")
+    for name, out in (("second", "named.csv"), (str(tmp_path / "copy.npz"), "by_file.csv")):
+        assert cli.run(["retarget", str(tmp_path / "take.csv"), "--character", name, "-o", str(tmp_path / out)]) == 0
+    assert "Moved Second head by 4 frames" in capsys.readouterr().out
+    named, by_file = read_take(tmp_path / "named.csv"), read_take(tmp_path / "by_file.csv")
+    np.testing.assert_array_equal(named.weights, by_file.weights)
+    assert (named.weights != take.weights[60:64]).any()

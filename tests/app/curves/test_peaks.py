@@ -19,6 +19,14 @@ def test_no_extreme_is_lost_and_the_cost_is_bounded(frames: int, columns: int, s
     assert (np.diff(x) >= 0).all()
 
 
+def test_a_thinned_curve_reaches_the_last_frame_and_none_beyond() -> None:
+    frames = 40 * BLOCK + 1  # the last block has a frame alone
+    curve = np.zeros(frames)
+    curve[-1] = 99.0
+    x, y = Thinned(curve).peaks(0, frames, 4)
+    assert x[y == 99.0].max() == frames - 1 == x.max()
+
+
 @given(st.integers(1, 9000), st.integers(1, 300), st.data())
 def test_a_thinned_curve_keeps_every_extreme_where_it_was(frames: int, columns: int, data: st.DataObject) -> None:
     curve = np.random.default_rng(frames).standard_normal((frames, 3))[:, 1]

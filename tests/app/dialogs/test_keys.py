@@ -45,13 +45,13 @@ def test_a_free_key_is_given_at_once(qtbot: QtBot, dialog: KeysDialog, settings:
     with qtbot.waitSignal(dialog.changed):
         QTest.keyClick(dialog.entry, Qt.Key.Key_F7)
     assert settings.keys == {"smooth": ("F7",)} and shown(dialog, "smooth") == "F7"
-    assert dialog.told.text() == "Smooth is F7 now." and dialog.take.isHidden()
+    assert dialog.remark.text() == "Smooth is F7 now." and dialog.take.isHidden()
 
 
 def test_a_key_of_another_action_is_taken_only_when_asked(qtbot: QtBot, dialog: KeysDialog, settings: Settings) -> None:
     choose(dialog, "smooth")
     QTest.keyClick(dialog.entry, Qt.Key.Key_V)
-    assert settings.keys == {} and dialog.told.text() == "V is used by Drag." and dialog.take.isVisible()
+    assert settings.keys == {} and dialog.remark.text() == "V is used by Drag." and dialog.take.isVisible()
     with qtbot.waitSignal(dialog.changed):
         QTest.mouseClick(dialog.take, Qt.MouseButton.LeftButton)
     assert (shown(dialog, "smooth"), shown(dialog, "drag_tool")) == ("V", "")

@@ -85,7 +85,7 @@ def test_what_cannot_be_read_gives_a_sentence_and_changes_nothing(qtbot, desk, t
     assert told.args[0].startswith("bad.wav") and desk.session.document.audio is None
 
 
-def test_without_a_device_the_wall_tells_the_time(qtbot, tmp_path) -> None:
+def test_without_a_device_the_wall_clock_is_used(qtbot, tmp_path) -> None:
     session = Session(Take(weights=np.zeros((90, len(SHAPES))), fps=30.0))
     transport = Transport(session)
     media = Media(session, transport, lambda rate, channels: None)

@@ -22,7 +22,7 @@ def captions(*, fps: float = 30.0, notes: tuple[Said, ...] = NOTES) -> Captions:
     return Captions(("Before: a", "After: b"), counting, counting.count_at(3600.0), notes)
 
 
-def test_a_frame_tells_its_timecode_and_the_notes_that_can_be_read() -> None:
+def test_a_frame_shows_its_timecode_and_the_notes_that_can_be_read() -> None:
     given = captions(fps=29.97)
     assert given.timecode(0) == "01:00:00;00" and given.timecode(1800) == "01:01:00;02"
     lasting = round(SHOWN_S * 30000 / 1001)

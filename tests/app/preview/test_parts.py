@@ -8,7 +8,7 @@ from app.preview.parts import eyeballs, part_of, shell_and_rest
 from engine.character import bundled
 
 
-def test_the_parts_of_the_bundled_head_are_told_apart() -> None:
+def test_the_bundled_head_is_split_into_its_parts() -> None:
     head = bundled()
     part = part_of(head)
     assert (part[head.triangles] == part[head.triangles[:, :1]]).all()  # no triangle joins two

@@ -69,7 +69,7 @@ def test_what_was_matched_by_likeness_or_left_out_is_listed_and_corrected(
     assert state.target.reading.stored() == {"names": {"jawOpen": ""}}
 
 
-def test_a_head_that_would_not_be_seen_is_told_and_can_be_read_in_another_unit(
+def test_a_head_too_small_to_see_is_reported_and_can_be_read_in_another_unit(
     qtbot: QtBot, retarget: RetargetActions, tmp_path: Path, choose_file: list[Path]
 ) -> None:
     path = write_glb(tmp_path / "giant.glb", NAMES, per_mm=0.1)

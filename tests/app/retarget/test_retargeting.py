@@ -137,7 +137,7 @@ def test_choosing_a_head_is_no_unsaved_edit_but_can_be_undone(aimed: RetargetAct
     assert aimed.retargeting.target.head is None
 
 
-def test_an_edit_of_the_take_drops_what_was_solved_from_it(qtbot: QtBot, aimed: RetargetActions) -> None:
+def test_an_edit_of_the_take_discards_the_result_solved_from_it(qtbot: QtBot, aimed: RetargetActions) -> None:
     click(aimed.panel.solve_button)
     qtbot.waitUntil(lambda: aimed.retargeting.result is not None, timeout=60_000)
     session = aimed._session
@@ -211,7 +211,7 @@ def test_another_frame_at_rest_is_measured_from(
     assert retarget.panel.rest_frame.value() == 1
 
 
-def test_a_capture_that_is_dropped_on_the_window_is_carried(
+def test_a_capture_that_is_dropped_on_the_window_is_retargeted(
     qtbot: QtBot, retarget: RetargetActions, tmp_path: Path
 ) -> None:
     _capture(tmp_path / "capture.trc")

@@ -13,7 +13,7 @@ from app.session.commands import EditCommand, MarkCommand, ReadingCommand, Visem
 from engine.editing import Patch
 from engine.extended import bundled_face
 from engine.formats.base.reading import ReadAs, Reading
-from engine.project import Marks, Pin, Span, replay
+from engine.project import Marks, Media, Pin, Span, replay
 from engine.speech.lane import attached
 from engine.speech.visemes import Cue
 from engine.take import SHAPES, Take
@@ -31,7 +31,7 @@ def document() -> Document:
 
 
 @pytest.fixture
-def told(document: Document) -> list[Change]:
+def signalled(document: Document) -> list[Change]:
     seen: list[Change] = []
     document.changed.connect(seen.append)
     return seen
@@ -45,7 +45,9 @@ def patch(seed: int = 0, start: int = ROWS.start) -> Patch:
     return Patch(start, weights, asked=asked, reached=controls)
 
 
-def test_an_edit_replaces_its_rows_alone_and_is_taken_back_to_the_bit(document: Document, told: list[Change]) -> None:
+def test_an_edit_replaces_its_rows_alone_and_is_taken_back_to_the_bit(
+    document: Document, signalled: list[Change]
+) -> None:
     before, controls = document.take, document.controls
     document.undo.push(EditCommand.of(document, patch(), "edit"))
     after = document.take
@@ -53,7 +55,7 @@ def test_an_edit_replaces_its_rows_alone_and_is_taken_back_to_the_bit(document: 
     rest = np.delete(np.arange(FRAMES), np.arange(FRAMES)[ROWS])
     np.testing.assert_array_equal(after.weights[rest], before.weights[rest])
     assert (document.asked[ROWS, 2] == 1.5).all() and np.isnan(document.asked[rest]).all()
-    assert document.touched == (4, 9) and document.edited and told[0] == Change.CURVES | Change.DRAFT
+    assert document.touched == (4, 9) and document.edited and signalled[0] == Change.CURVES | Change.DRAFT
     document.undo.undo()
     np.testing.assert_array_equal(document.take.weights, before.weights)
     np.testing.assert_array_equal(document.controls, controls)
@@ -73,26 +75,26 @@ def test_an_edit_replaces_its_rows_alone_and_is_taken_back_to_the_bit(document: 
         (lambda d: d.slide("audio", 1.0), Change.MEDIA),
     ],
 )
-def test_each_change_tells_its_kind_once(
-    document: Document, told: list[Change], change: Callable[[Document], None], kind: Change
+def test_each_change_is_signalled_once(
+    document: Document, signalled: list[Change], change: Callable[[Document], None], kind: Change
 ) -> None:
     change(document)
-    assert told == [kind]
+    assert signalled == [kind]
 
 
-def test_what_changes_nothing_tells_nothing(document: Document, told: list[Change]) -> None:
+def test_what_changes_nothing_signals_nothing(document: Document, signalled: list[Change]) -> None:
     document.set_marks(document.marks)
     document.set_visemes(None)
     document.set_differences(None)
-    assert told == []
+    assert signalled == []
 
 
-def test_opening_tells_nobody_and_forgets_everything_else(document: Document, told: list[Change]) -> None:
+def test_opening_signals_nothing_and_forgets_everything_else(document: Document, signalled: list[Change]) -> None:
     document.undo.push(EditCommand.of(document, patch(), "edit"))
-    told.clear()
+    signalled.clear()
     other = Take(np.zeros((7, len(SHAPES))), 24.0)
     document.open(other, None)
-    assert told == [] and not document.opening
+    assert signalled == [] and not document.opening
     assert document.take is document.original is document.recorded is other
     assert document.undo.count() == 0 and document.marks == Marks() and document.touched == (0, 7)
 
@@ -126,11 +128,11 @@ def test_steps_from_a_file_do_and_undo_what_those_that_were_made_do(document: Do
     assert (len(contents.edits), contents.position) == (5, 4)
 
     again, state = Document(contents.original), replay(contents)
-    told: list[Change] = []
-    again.changed.connect(told.append)
+    signalled: list[Change] = []
+    again.changed.connect(signalled.append)
     measured = tuple(bundled_face().measure(take.weights) for take in (contents.original, state.take))
     again.restore(contents, None, restored(again, contents, state), state, measured)
-    assert told == [] and not again.opening and not again.edited
+    assert signalled == [] and not again.opening and not again.edited
     for go in ("redo", *["undo"] * 5, *["redo"] * 5):
         for each in (document, again):
             getattr(each.undo, go)()
@@ -139,3 +141,12 @@ def test_steps_from_a_file_do_and_undo_what_those_that_were_made_do(document: Do
         assert (again.take.fps, again.marks) == (document.take.fps, document.marks)
         cues = [each.visemes.cues if each.visemes is not None else () for each in (document, again)]
         assert cues[0] == cues[1]
+
+
+def test_while_the_sound_is_dragged_it_begins_where_it_is_shown_and_then_where_it_is_kept(document: Document) -> None:
+    document.set_marks(document.marks.with_medium("audio", Media("audio", "a.wav", "ab" * 32, 0.5)))
+    assert document.offset_s("audio") == -0.5 and document.offset_s("video") == 0.0
+    document.slide("audio", 1.25)
+    assert document.offset_s("audio") == 1.25 and document.offset_s("video") == 0.0
+    document.slide("audio", None)
+    assert document.offset_s("audio") == -0.5

@@ -94,7 +94,7 @@ def test_the_latest_wish_wins_and_those_between_are_never_begun(
     assert work.begun == [first, last] and arrived == [first, last]  # a finished result shows progress
 
 
-def test_work_that_nobody_wants_any_more_stops_where_it_tells_how_far_it_is(
+def test_replaced_work_stops_where_it_reports_its_progress(
     qtbot: QtBot, session: Session, runner: Runner, work: Work
 ) -> None:
     arrived: list[Asked] = []
@@ -111,7 +111,7 @@ def test_work_that_nobody_wants_any_more_stops_where_it_tells_how_far_it_is(
     qtbot.waitUntil(lambda: arrived == [last])
 
 
-def test_nothing_arrives_after_it_was_dropped_or_of_a_take_that_is_closed(
+def test_nothing_arrives_after_a_cancel_or_of_a_closed_take(
     qtbot: QtBot, session: Session, runner: Runner, work: Work
 ) -> None:
     arrived: list[Asked] = []

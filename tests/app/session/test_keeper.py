@@ -235,7 +235,7 @@ def test_a_project_that_cannot_be_read_leaves_the_session_as_it_was(qtbot: QtBot
     kept(qtbot, first, lambda: push(first._session, 2))
 
 
-def test_a_folder_that_cannot_be_written_is_told_once_and_tried_again_with_each_edit(
+def test_a_folder_that_cannot_be_written_is_reported_once_and_tried_again_with_each_edit(
     qtbot: QtBot, make: Made, tmp_path: Path
 ) -> None:
     (tmp_path / "data").write_bytes(b"a file where the folder should be")
@@ -278,7 +278,7 @@ def test_a_full_disk_keeps_the_work_in_memory_until_there_is_room(qtbot: QtBot, 
     assert len(Project.open(tmp_path / "a.retake").contents.edits) == 4
 
 
-def test_no_room_for_unsaved_work_is_told_without_the_name_of_its_file(
+def test_no_room_for_unsaved_work_is_reported_without_the_name_of_its_file(
     qtbot: QtBot, make: Made, tmp_path: Path
 ) -> None:
     first = make()

@@ -8,6 +8,7 @@ import pytest
 from app.session import RADII_S, Change, Document, View
 from app.session.curve_table import FIRST_WEIGHT, weights_under
 from app.session.view import BRUSH_S, FIRST_VIEW_S
+from engine.character import bundled
 from engine.controls import CONTROLS
 from engine.take import SHAPES, Take
 
@@ -20,7 +21,7 @@ def view() -> View:
 
 
 @pytest.fixture
-def told(view: View) -> list[Change]:
+def signalled(view: View) -> list[Change]:
     seen: list[Change] = []
     view.changed.connect(seen.append)
     return seen
@@ -37,13 +38,13 @@ def test_the_playhead_stays_on_frames_that_exist(view: View, wanted: int, got: i
     assert view.playhead == got
 
 
-def test_the_frames_on_screen_follow_the_playhead_and_keep_their_number(view: View, told: list[Change]) -> None:
+def test_the_frames_on_screen_follow_the_playhead_and_keep_their_number(view: View, signalled: list[Change]) -> None:
     view.move_playhead(480)
-    assert told == [Change.PLAYHEAD] and view.range == (0.0, 480.0)
+    assert signalled == [Change.PLAYHEAD] and view.range == (0.0, 480.0)
     view.move_playhead(481)
-    assert told[1:] == [Change.PLAYHEAD, Change.VIEW] and view.range == (481 - 48, 481 + 432)
+    assert signalled[1:] == [Change.PLAYHEAD, Change.VIEW] and view.range == (481 - 48, 481 + 432)
     view.move_playhead(481)
-    assert len(told) == 3
+    assert len(signalled) == 3
     view.move_playhead(100)
     assert view.range == (0.0, 480.0)  # 100 would be nine tenths across, and nothing lies before the first frame
 
@@ -85,10 +86,10 @@ def test_a_selection_is_a_range_of_frames_or_nothing(
     assert view.selection == got
 
 
-def test_weights_stand_below_the_control_that_is_expanded(view: View, told: list[Change]) -> None:
+def test_weights_stand_below_the_control_that_is_expanded(view: View, signalled: list[Change]) -> None:
     under = weights_under(1)
     view.expand(1)
-    assert told == [Change.LANES | Change.LANE]
+    assert signalled == [Change.LANES | Change.LANE]
     assert view.lanes == [0, 1, *under, *range(2, len(CONTROLS))]
     view.choose_lane(under[0])
     view.expand(under[0])  # named by one of them
@@ -106,9 +107,9 @@ def test_a_control_beyond_the_eight_gets_a_lane_and_loses_it(view: View) -> None
     assert view.lane == 0
 
 
-def test_the_brush_stays_within_its_limits_and_comes_to_frames(view: View, told: list[Change]) -> None:
+def test_the_brush_stays_within_its_limits_and_comes_to_frames(view: View, signalled: list[Change]) -> None:
     view.set_brush(radius_s=0.5, strength=3.0, believability=-1.0)
-    assert (view.radius_frames, view.strength, view.believability) == (15.0, 1.0, 0.0) and told == [Change.TOOL]
+    assert (view.radius_frames, view.strength, view.believability) == (15.0, 1.0, 0.0) and signalled == [Change.TOOL]
     for asked, got in zip((0.0, 1e9), RADII_S, strict=True):
         view.set_brush(radius_s=asked)
         assert view.radius_s == got
@@ -122,3 +123,14 @@ def test_another_take_is_looked_at_anew_with_the_same_tool(view: View) -> None:
     view.reset()
     assert (view.playhead, view.selection, view.radius_s) == (0, None, BRUSH_S)
     assert (view.tool, view.strength) == ("scale", 0.5)
+
+
+def test_the_shown_head_is_signalled_once_and_stays_with_another_take(view: View, signalled: list[Change]) -> None:
+    head = bundled()
+    view.show_on(head)
+    view.show_on(head)
+    assert view.head is head and signalled == [Change.HEAD]
+    view.reset()
+    assert view.head is head
+    view.show_on(None)
+    assert view.head is None and signalled == [Change.HEAD] * 2

@@ -24,7 +24,7 @@ def curves(session: Session, start: int, stop: int, column: int, by: float) -> n
     return asked
 
 
-def test_a_first_wish_asks_for_what_differs_alone(session: Session) -> None:
+def test_a_first_request_covers_the_differing_frames_alone(session: Session) -> None:
     base, wish = Wishes(session).asking(10, curves(session, 10, 20, 0, 2.0))
     assert base.take is session.document.take and wish.frames == (10, 20)
     assert not np.isnan(wish.asked[:, 0]).any() and np.isnan(wish.asked[:, 1:]).all()

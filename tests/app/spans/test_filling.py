@@ -83,7 +83,7 @@ def test_an_edit_that_overtakes_a_fill_ends_it(qtbot: QtBot, session: Session, f
     assert not filling.variants and session.document.draft is None
 
 
-def test_dropping_keeps_none(qtbot: QtBot, session: Session, filling: Filling) -> None:
+def test_discarding_keeps_no_variant(qtbot: QtBot, session: Session, filling: Filling) -> None:
     filling.start(Span(40, 70))
     made(qtbot, filling)
     filling.drop()

@@ -71,7 +71,7 @@ def test_a_boundary_is_dragged_by_one_undo_step_and_the_originals_stay(timeline:
     assert lane_of(timeline).cues == moved.cues
 
 
-def test_a_step_back_while_a_boundary_is_held_lets_go_of_it(timeline: Timeline) -> None:
+def test_undo_while_a_boundary_is_dragged_cancels_the_drag(timeline: Timeline) -> None:
     session = timeline._session
     drag(timeline, at(timeline, 2.0), at(timeline, 2.4))
     QTest.mousePress(timeline, LEFT, PLAIN, at(timeline, 5.0))
@@ -143,7 +143,7 @@ def test_what_cannot_be_said_is_one_sentence_and_changes_nothing(qtbot: QtBot, t
     assert lane_of(timeline) is before and timeline._session.document.undo.count() == 0
 
 
-def test_escape_drops_what_is_typed(qtbot: QtBot, timeline: Timeline) -> None:
+def test_escape_cancels_what_is_typed(qtbot: QtBot, timeline: Timeline) -> None:
     timeline.visemes.type_name(1)
     entry = timeline.visemes.entry
     QTest.keyClicks(entry, "T")
@@ -199,7 +199,7 @@ def test_without_visemes_there_is_no_lane(timeline: Timeline) -> None:
     session, height = timeline._session, timeline.sizeHint().height()
     session.document.set_visemes(None)
     assert timeline.lane_box("visemes").isEmpty() and timeline.sizeHint().height() < height
-    assert timeline.visemes.edge_at(300) is None and timeline.visemes.tell(300) == ""
+    assert timeline.visemes.edge_at(300) is None and timeline.visemes.tool_tip(300) == ""
 
 
 FLAGS = (
@@ -210,7 +210,7 @@ FLAGS = (
 )
 
 
-def test_a_mark_is_clicked_to_go_there_and_tells_why(timeline: Timeline) -> None:
+def test_a_mark_is_clicked_to_go_there_and_shows_why(timeline: Timeline) -> None:
     session = timeline._session
     session.document.set_flags(FLAGS)
     timeline.grab()

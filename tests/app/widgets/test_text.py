@@ -22,7 +22,7 @@ def guard(qapp: QApplication) -> object:
     parent = QObject()
     guarding = PlainText(parent)
     yield guarding
-    guarding.let_go()
+    guarding.remove()
 
 
 def test_labels_show_markup_as_text(qtbot: QtBot) -> None:
@@ -39,7 +39,7 @@ def test_endless_words_do_not_widen_a_label_that_wraps(qtbot: QtBot) -> None:
     assert label.minimumSizeHint().width() < 500
 
 
-def test_names_are_shortened_and_told_whole_in_the_tooltip(qtbot: QtBot) -> None:
+def test_names_are_shortened_and_shown_whole_in_the_tooltip(qtbot: QtBot) -> None:
     name = Name("<b>" + "x" * 100 + ".csv", longest=30)
     qtbot.addWidget(name)
     assert len(name.text()) <= 30 and name.text().endswith(".csv") and "<b>" in name.toolTip().replace("\n", "")

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine.clean.infer import FROZEN_S, LEAD_S, SLOW_PER_S, Cleaner, CleanState, believable, bundled
-from engine.clean.landing import Landing
+from engine.clean.inertialisation import Inertialisation
+from engine.clean.infer import TUNING, Cleaner, CleanState, bundled, plausible
 from engine.take import SHAPES
 
 RNG = np.random.default_rng(1)
@@ -23,7 +23,7 @@ def follow(cleaner: Cleaner, frames: list[np.ndarray | None], fps: float = 60.0)
 
 @pytest.mark.parametrize("fps", [30.0, 60.0, 120.0])
 def test_a_constant_face_comes_to_rest(fps: float) -> None:
-    shown = np.array([state.shown for state in follow(bundled(), [POSE] * round(40 * fps), fps)])
+    shown = np.array([state.output for state in follow(bundled(), [POSE] * round(40 * fps), fps)])
     assert np.abs(shown[-round(10 * fps) :] - shown[-1]).max() < 1e-3
     assert np.abs(shown[-1] - POSE).max() < 0.25
 
@@ -31,30 +31,30 @@ def test_a_constant_face_comes_to_rest(fps: float) -> None:
 def test_an_hour_of_one_and_the_same_frame_does_not_drift() -> None:
     frozen = follow(bundled(), [POSE] * 60 * 90)
     stands = frozen[60 * 60 :]
-    assert all(np.array_equal(state.shown, stands[0].shown) for state in stands)  # to the last bit
+    assert all(np.array_equal(state.output, stands[0].output) for state in stands)  # to the last bit
     # what is left of each step only shrinks, so nothing moves in the rest of the hour either
-    left = np.exp(-(stands[0].frozen_s - FROZEN_S) / FROZEN_S) * 3600 * 60
+    left = np.exp(-(stands[0].frozen_s - TUNING.frozen_s) / TUNING.frozen_s) * 3600 * 60
     assert left < 1e-3 and np.abs(stands[0].velocity).max() == 0
     hour = follow(bundled(), [POSE] * 7200, fps=2.0)  # and a whole hour in long steps
-    assert np.abs(hour[-1].shown - hour[120].shown).max() < 1e-3
+    assert np.abs(hour[-1].output - hour[120].output).max() < 1e-3
 
 
 @pytest.mark.parametrize("fps", [24.0, 60.0, 120.0])
-def test_moving_shapes_are_shown_ahead_and_resting_ones_are_not(fps: float) -> None:
+def test_moving_shapes_are_extrapolated_and_still_ones_are_not(fps: float) -> None:
     ramp = np.clip(np.arange(round(0.5 * fps)) / fps, 0, 1)[:, None] * 1.6 * (POSE > 0.3)
     for state in follow(bundled(), [*ramp.astype(np.float32)], fps):
-        slow = np.abs(state.velocity) <= SLOW_PER_S
-        assert not state.ahead[slow].any()
-        assert (state.ahead[~slow] * state.velocity[~slow] > 0).all()
-        assert (np.abs(state.ahead) <= LEAD_S * np.abs(state.velocity)).all()
+        slow = np.abs(state.velocity) <= TUNING.slow_per_s
+        assert not state.lead[slow].any()
+        assert (state.lead[~slow] * state.velocity[~slow] > 0).all()
+        assert (np.abs(state.lead) <= TUNING.lead_s * np.abs(state.velocity)).all()
     still = follow(bundled(), [POSE] * 200, fps)[-1]
-    assert not still.ahead.any()
+    assert not still.lead.any()
 
 
-def test_the_leap_that_ends_a_lost_run_is_not_shown_ahead() -> None:
+def test_the_jump_that_ends_a_lost_run_is_not_extrapolated() -> None:
     frames = [*[MOVING[0]] * 60, *[None] * 30, 1 - MOVING[0]]
     *_, before, after = follow(bundled(), frames)
-    np.testing.assert_array_equal(after.ahead, before.ahead)
+    np.testing.assert_array_equal(after.lead, before.lead)
     assert np.abs(after.velocity).max() > 1.0
 
 
@@ -64,20 +64,20 @@ def test_one_bad_packet_is_no_worse_than_a_lost_one(bad: float) -> None:
     spoilt, missing = list(frames), list(frames)
     spoilt[100], missing[100] = np.where(np.arange(len(SHAPES)) == 17, bad, MOVING[100]), None
     for one, other in zip(follow(bundled(), spoilt), follow(bundled(), missing), strict=True):
-        np.testing.assert_array_equal(one.shown, other.shown)
-    undisturbed = follow(bundled(), frames)[-1].shown
-    assert np.abs(follow(bundled(), spoilt)[-1].shown - undisturbed).max() < 0.01
+        np.testing.assert_array_equal(one.output, other.output)
+    undisturbed = follow(bundled(), frames)[-1].output
+    assert np.abs(follow(bundled(), spoilt)[-1].output - undisturbed).max() < 0.01
 
 
 @pytest.mark.parametrize("gap", [1, 6, 60, 240])
 def test_a_lost_run_is_left_and_ended_without_a_pop(gap: int) -> None:
     frames = [*MOVING[:120], *[None] * gap, *np.minimum(1, MOVING[120:] + 0.5 * (POSE > 0))]
-    shown = np.array([state.shown for state in follow(bundled(), frames)])
+    shown = np.array([state.output for state in follow(bundled(), frames)])
     speed = np.abs(np.diff(shown, axis=0)).max(axis=1)
     assert np.isfinite(shown).all() and speed[119 : 119 + gap].max() < 0.1  # no leap as the bridge begins
     jump = np.abs(shown[119 + gap] - frames[-120]).max()  # how far the bridge is from the face that returns
     if gap > 1:
-        assert speed[119 + gap] < max(0.35 * jump, 0.05)  # not a frame's leap, as it would be without a landing
+        assert speed[119 + gap] < max(0.35 * jump, 0.05)  # not a frame's leap, as it would be without inertialisation
     assert np.abs(shown[-1] - shown[-2]).max() < 0.05
 
 
@@ -86,17 +86,17 @@ def test_the_output_is_always_a_face() -> None:
     wild = [row if rng.random() > 0.2 else None for row in rng.uniform(-0.9, 1.9, (300, len(SHAPES)))]
     wild[0] = MOVING[0]
     for state in follow(bundled(), wild):
-        assert state.shown.min() >= 0 and state.shown.max() <= 1
+        assert state.output.min() >= 0 and state.output.max() <= 1
     stepped = bundled().step(MOVING[0], 0.0, bundled().start(MOVING[0]))
     assert np.isfinite(stepped.velocity).all()
 
 
-def test_what_is_shown_is_ahead_of_the_estimate_and_on_its_way_back_to_it() -> None:
+def test_the_output_is_the_estimate_with_lead_and_offset() -> None:
     still = bundled().start(np.full(len(SHAPES), 0.5))
     away = np.full(len(SHAPES), 0.25, np.float32)
-    state = replace(still, ahead=away / 5, landing=Landing(-away, 0 * away))
-    np.testing.assert_allclose(state.shown, 0.5 + 0.05 - 0.25, rtol=1e-6)
-    assert (replace(still, ahead=4 * away).shown == 1).all() and (replace(still, ahead=-4 * away).shown == 0).all()
+    state = replace(still, lead=away / 5, offset=Inertialisation(-away, 0 * away))
+    np.testing.assert_allclose(state.output, 0.5 + 0.05 - 0.25, rtol=1e-6)
+    assert (replace(still, lead=4 * away).output == 1).all() and (replace(still, lead=-4 * away).output == 0).all()
 
 
 @pytest.mark.parametrize(("fps", "share"), [(24.0, 0.16), (30.0, 0.25), (60.0, 1.0), (120.0, 1.0)])
@@ -105,13 +105,13 @@ def test_fast_shapes_lead_by_eight_milliseconds_of_what_exceeds_a_slow_motion(fp
     state = follow(bundled(), [*ramp.astype(np.float32)], fps)[-1]
     beyond = np.sign(state.velocity) * np.maximum(np.abs(state.velocity) - 0.5, 0)
     assert np.abs(beyond).max() > 0.04
-    np.testing.assert_allclose(state.ahead, share * 0.008 * beyond, rtol=1e-4, atol=1e-9)
+    np.testing.assert_allclose(state.lead, share * 0.008 * beyond, rtol=1e-4, atol=1e-9)
 
 
 def test_one_frame_for_long_is_followed_less_and_less() -> None:
     before = follow(bundled(), [*MOVING[:60]])[-1]
     fresh, stale, old = (
-        bundled().step(before.seen, 1 / 60, replace(before, frozen_s=seconds)) for seconds in (0.0, 0.9, 5.0)
+        bundled().step(before.observed, 1 / 60, replace(before, frozen_s=seconds)) for seconds in (0.0, 0.9, 5.0)
     )
     inside = (fresh.weights > 0.01) & (fresh.weights < 0.99)
     jump, less = (fresh.weights - before.weights)[inside], (old.weights - before.weights)[inside]
@@ -135,9 +135,9 @@ def test_a_frame_counts_as_a_face_up_to_the_limits_and_no_further() -> None:
     frame = np.full(len(SHAPES), 0.5)
     for value, clamped in ((-1.0, 0.0), (2.0, 1.0), (0.25, 0.25)):
         frame[3] = value
-        found = believable(frame)
+        found = plausible(frame)
         assert found is not None and found[3] == clamped and found[4] == 0.5
     for value in (-1.001, 2.001, np.nan):
         frame[3] = value
-        assert believable(frame) is None
-    assert believable(None) is None
+        assert plausible(frame) is None
+    assert plausible(None) is None

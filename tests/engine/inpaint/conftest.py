@@ -5,6 +5,10 @@ from collections.abc import Iterator
 import pytest
 import torch
 
+from engine.inpaint.statistics import Statistics
+from engine.take import Array
+from tests.engine.inpaint.gaps import performance, performance_statistics, torn
+
 
 @pytest.fixture(autouse=True)
 def one_thread() -> Iterator[None]:
@@ -13,3 +17,18 @@ def one_thread() -> Iterator[None]:
     torch.set_num_threads(1)
     yield
     torch.set_num_threads(before)
+
+
+@pytest.fixture
+def truth() -> Array:
+    return performance()
+
+
+@pytest.fixture
+def statistics() -> Statistics:
+    return performance_statistics()
+
+
+@pytest.fixture
+def known() -> Array:
+    return torn()

@@ -59,22 +59,22 @@ def test_the_face_is_the_mean_of_what_each_member_says(members: list[Expected], 
 def test_any_length_and_any_controls_give_a_face(frames: int) -> None:
     curves = measure(np.random.default_rng(0).random((frames, len(SHAPES))) * 0.3)
     for names in ((), ("eyelid_left",), FEW, tuple(CONTROL_INDEX)):
-        face = bundled().face(only(curves, *names))
+        face = bundled().pose(only(curves, *names))
         assert face.shape == (frames, len(SHAPES)) and face.min() >= 0 and face.max() <= 1
 
 
 def test_a_control_that_is_not_given_has_no_say() -> None:
     curves = measure(np.random.default_rng(0).random((40, len(SHAPES))) * 0.3)
     others = curves + np.where(np.isin(list(CONTROL_INDEX), FEW), 0.0, 5.0)
-    np.testing.assert_array_equal(bundled().face(only(curves, *FEW)), bundled().face(only(others, *FEW)))
-    assert np.abs(bundled().face(curves) - bundled().face(others)).max() > 0.01
+    np.testing.assert_array_equal(bundled().pose(only(curves, *FEW)), bundled().pose(only(others, *FEW)))
+    assert np.abs(bundled().pose(curves) - bundled().pose(others)).max() > 0.01
 
 
 def test_one_eyelid_that_shuts_shuts_both_eyes_and_leaves_the_jaw() -> None:
     rest = measure(np.zeros((60, len(SHAPES))))
     shut = rest.copy()
     shut[25:35, CONTROL_INDEX["eyelid_left"]] = 0.5
-    moved = bundled().face(only(shut, *FEW))[30] - bundled().face(only(rest, *FEW))[30]
+    moved = bundled().pose(only(shut, *FEW))[30] - bundled().pose(only(rest, *FEW))[30]
     assert moved[SHAPE_INDEX["eyeBlinkLeft"]] > 0.4 and moved[SHAPE_INDEX["eyeBlinkRight"]] > 0.4
     assert abs(moved[SHAPE_INDEX["jawOpen"]]) < 0.1
 

@@ -9,11 +9,11 @@ import torch
 from engine.controls import measure
 from engine.errors import EditError
 from engine.inpaint.fill import Fill, fill, fill_lost, fill_spans, lost_spans, refill
-from engine.inpaint.gap import statistics_of
 from engine.inpaint.infer import Filler
 from engine.inpaint.network import Generator, GeneratorConfig
 from engine.inpaint.regions import REGIONS, region_shapes
 from engine.inpaint.request import FillRequest, merged_pins
+from engine.inpaint.statistics import statistics_of
 from engine.lab.performer import demo
 from engine.lab.performer.performer import perform
 from engine.models.resample import interpolate

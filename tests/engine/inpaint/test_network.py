@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import torch
 
-from engine.inpaint.network import MEMORY_FRAMES, Discriminator, Generator, GeneratorConfig, noise_curves, see
+from engine.inpaint.network import TUNING, Discriminator, Generator, GeneratorConfig, discriminator_inputs, noise_curves
 from engine.models.distances import six_distances
 from engine.take import SHAPES
 
@@ -13,9 +13,9 @@ SMALL = GeneratorConfig(features=5, noise=8, hidden=6, layers=1, dropout=0.0, fi
 def test_noise_has_unit_variance_and_forgets_itself_at_each_curve_s_own_pace() -> None:
     curves = noise_curves(40_000, np.random.default_rng(0)).astype(float)
     assert curves.shape == (40_000, 8) and noise_curves(3, np.random.default_rng(0)).dtype == np.float32
-    slow = np.array(MEMORY_FRAMES)
+    slow = np.array(TUNING.memory_frames)
     np.testing.assert_allclose(curves.std(axis=0), 1, atol=0.02 + 0.0015 * slow.max())
-    for column, memory in enumerate(MEMORY_FRAMES):
+    for column, memory in enumerate(TUNING.memory_frames):
         kept = np.corrcoef(curves[1:, column], curves[:-1, column])[0, 1]
         assert abs(kept - (np.exp(-1 / memory) if memory else 0.0)) < 0.02
     np.testing.assert_array_equal(
@@ -44,11 +44,13 @@ def test_a_fresh_generator_adds_no_motion_and_a_moved_one_sees_no_feature_beyond
 
 def test_a_discriminator_sees_poses_distances_and_their_velocities() -> None:
     weights, distances = torch.rand(2, 17, len(SHAPES)), six_distances(unit_mm=10.0)
-    seen = see(weights, distances)
+    seen = discriminator_inputs(weights, distances)
     assert seen.shape == (2, 17, 116)
     torch.testing.assert_close(seen[..., :52], weights)
     torch.testing.assert_close(seen[..., 52:58], distances(weights))
     torch.testing.assert_close(seen[:, 1:, 58:], seen[:, 1:, :58] - seen[:, :-1, :58])
     assert not seen[:, 0, 58:].any()
     for frames in (16, 17, 31):
-        assert Discriminator(frames, widths=(4, 3))(see(torch.rand(5, frames, 52), distances)).shape == (5,)
+        assert Discriminator(frames, widths=(4, 3))(
+            discriminator_inputs(torch.rand(5, frames, 52), distances)
+        ).shape == (5,)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from engine.errors import EditError
-from engine.inpaint.request import Request, checked, merged_pins
+from engine.inpaint.request import FillRequest, checked, merged_pins
 from engine.speech.visemes import Cue
 from engine.take import SHAPE_INDEX, SHAPES, Take
 
 TAKE = Take(np.full((60, len(SHAPES)), 0.2), 30.0)
 GUIDE = Take(np.full((40, len(SHAPES)), 0.2), 30.0, np.arange(40) < 10)
-SPAN = Request((10, 20))
+SPAN = FillRequest((10, 20))
 PINNED = {12: {"jawOpen": 0.5}}
 
 
@@ -20,20 +20,20 @@ PINNED = {12: {"jawOpen": 0.5}}
     "request_",
     [
         SPAN,
-        Request((0, 60), "lower"),
-        Request((0, 60), pins={0: {"jawOpen": 1.1}, 59: {"jawOpen": -0.1}}),
-        Request((0, 60), guide=Take(np.zeros((60, 52)), 30.02)),
-        Request((0, 60), visemes=(Cue(0.0, 0.0, "M"),)),
-        Request((0, 60), controls={"lips_vertical": 1000.0}),
-        Request((5, 6), lost=True),
-        Request((5, 7), style="bridge"),
-        Request((10, 20), guide=GUIDE, guide_offset=-9),
-        Request((10, 20), guide=GUIDE, guide_offset=20),
-        Request((10, 20), pins={10: {"jawOpen": 0.0}, 19: {"jawOpen": 0.0}}),
-        Request((10, 20), controls={"lips_vertical": np.array([0.0, *[np.nan] * 9])}),
+        FillRequest((0, 60), "lower"),
+        FillRequest((0, 60), pins={0: {"jawOpen": 1.1}, 59: {"jawOpen": -0.1}}),
+        FillRequest((0, 60), guide=Take(np.zeros((60, 52)), 30.02)),
+        FillRequest((0, 60), visemes=(Cue(0.0, 0.0, "M"),)),
+        FillRequest((0, 60), controls={"lips_vertical": 1000.0}),
+        FillRequest((5, 6), lost=True),
+        FillRequest((5, 7), style="bridge"),
+        FillRequest((10, 20), guide=GUIDE, guide_offset=-9),
+        FillRequest((10, 20), guide=GUIDE, guide_offset=20),
+        FillRequest((10, 20), pins={10: {"jawOpen": 0.0}, 19: {"jawOpen": 0.0}}),
+        FillRequest((10, 20), controls={"lips_vertical": np.array([0.0, *[np.nan] * 9])}),
     ],
 )
-def test_what_fits_a_take_is_let_through(request_: Request) -> None:
+def test_what_fits_a_take_is_let_through(request_: FillRequest) -> None:
     found = checked(request_, TAKE)
     length = request_.frames[1] - request_.frames[0]
     assert replace(found, controls={}) == replace(request_, controls={}) or found.frames == request_.frames
@@ -84,5 +84,5 @@ def test_pins_of_one_frame_are_joined_unless_they_disagree() -> None:
     assert asked == {"jawOpen": 0.5, "tongueOut": 1.0}
     with pytest.raises(EditError, match="Two pins at frame 3 ask for different values of jawOpen"):
         merged_pins([(3, {"jawOpen": 0.5}), (3, {"jawOpen": 0.6})])
-    poses = Request((0, 9), pins=PINNED).poses()
+    poses = FillRequest((0, 9), pins=PINNED).poses()
     assert list(poses) == [12] and np.isfinite(poses[12]).sum() == 1

@@ -213,7 +213,7 @@ class Noted:
         self.steps: list[tuple[bool, float]] = []
 
     def start(self, weights: np.ndarray) -> SimpleNamespace:
-        return SimpleNamespace(shown=weights)
+        return SimpleNamespace(output=weights)
 
     def step(self, seen: np.ndarray | None, step_s: float, state: SimpleNamespace) -> SimpleNamespace:
         self.steps.append((seen is not None, step_s))

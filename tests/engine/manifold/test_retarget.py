@@ -155,7 +155,7 @@ def test_a_solve_from_labels_tells_its_share_and_stops_when_asked(random_take: T
         raise Enough
 
     with pytest.raises(Enough):
-        from_labels(random_take, {3: random_take.weights[3]}, tell=tell)
+        from_labels(random_take, {3: random_take.weights[3]}, progress=tell)
 
 
 def test_frames_that_are_loosely_held_are_those_that_come_out_wrong() -> None:

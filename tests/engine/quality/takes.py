@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.controls import CONTROL_INDEX, measure
-from engine.quality import (
-    Seen,
-    flags_of,
-)
+from engine.controls import CONTROL_INDEX
+from engine.extended import bundled_face
+from engine.quality import KINDS, FlagSettings, Seen, flags_of
 from engine.speech.lane import attached
 from engine.speech.visemes import Cue
 from engine.take import SHAPE_INDEX, SHAPES, Array
 
 FPS = 30.0
+measure = bundled_face().measure
+EVERY = FlagSettings(counts={name: True for name in KINDS})
 SAID = ["M", "AA1", "B", "P", "IY", "M", "V", "B", "F", "M", "P", "B"]
 STEADY = [i for i, name in enumerate(SHAPES) if name.startswith(("brow", "cheek", "nose"))]
 CLOSED_FACE = {"jawOpen": 0.0, "mouthClose": 0.3, "mouthShrugLower": 1.0, "mouthRollUpper": 1.0}
@@ -56,7 +56,7 @@ def put_blinks(weights: Array, rng: np.random.Generator) -> None:
     weights[:, [i for i, name in enumerate(SHAPES) if name.startswith("eye")]] = 0.0
     for number, start in enumerate(range(10, len(weights) - 20, 40)):
         late = 4 if number == 3 else 0
-        size = 0.4 if number == 7 else 1.0
+        size = 0.5 if number == 7 else 1.0
         for side, shift in (("Left", 0), ("Right", late)):
             weights[start + shift : start + shift + 5, SHAPE_INDEX[f"eyeBlink{side}"]] = size * np.sin(
                 np.linspace(0, np.pi, 5)
@@ -81,7 +81,7 @@ def looked(weights: Array, **more: object) -> Seen:
 
 
 def found(seen: Seen, kind: str) -> list[tuple[int, int]]:
-    return [(flag.start, flag.stop) for flag in flags_of(seen) if flag.kind == kind]
+    return [(flag.start, flag.stop) for flag in flags_of(seen, EVERY) if flag.kind == kind]
 
 
 def spoken(frames: int) -> tuple[Array, Array]:

@@ -48,6 +48,14 @@ def test_what_was_asked_and_not_reached_is_told_with_both_values(by: float, flag
     assert not list(missed(replace(seen, asked=None), 0, 40))
 
 
+def test_what_misses_by_just_the_threshold_is_no_part_of_what_is_told() -> None:
+    controls = np.full((40, len(ALL_CONTROLS)), 12.0)
+    asked = np.full_like(controls, np.nan)
+    asked[10:16, 3] = [14.0, 14.5, 15.0, 9.5, 10.0, 12.0]
+    (flag,) = missed(Seen(still(40), controls, 30.0, np.zeros(40, bool), asked), 0, 40)
+    assert (flag.start, flag.stop) == (11, 14) and "15.0" in flag.sentence
+
+
 def edited(change: Array, before: Array | None = None) -> Seen:
     """A take whose shape 20 was changed by so much."""
     original = np.full((len(change), len(SHAPES)), 0.3) if before is None else before

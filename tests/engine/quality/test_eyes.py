@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine.controls import ALL_CONTROLS, measure
+from engine.controls import ALL_CONTROLS
 from engine.quality import (
     TUNING,
     Seen,
@@ -16,6 +16,7 @@ from engine.take import SHAPE_INDEX, SHAPES, Array
 from tests.engine.quality.takes import (
     found,
     looked,
+    measure,
 )
 
 
@@ -88,12 +89,12 @@ def test_a_blink_that_stays_farther_open_than_most_is_flagged_at_its_bottom() ->
     assert of(unclosed, lids(blinking(*SHUT, (120, 4.5)))) == [(120, 121, 0.6)]
     assert not of(unclosed, lids(blinking(*SHUT, (120, 3.4))))  # 2.9 mm more than the others
     assert of(unclosed, lids(blinking(*SHUT, (120, 3.6)))) == [(120, 121, round(0.2 + 0.8 * 0.2, 6))]
-    for dip, flagged in ((1.9, False), (2.1, True)):
+    for dip, flagged in ((4.4, False), (4.6, True)):  # of 10 mm: .45 of the way to shut
         gap = blinking(*SHUT)
         gap[120] -= dip
         assert bool(of(unclosed, lids(gap))) == flagged
-    weak = [(at, 3.5) for at, _ in SHUT]
-    assert not of(unclosed, lids(blinking(*weak, (120, 6.4)))) and of(unclosed, lids(blinking(*weak, (120, 6.6))))
+    weak = [(at, 2.0) for at, _ in SHUT]
+    assert not of(unclosed, lids(blinking(*weak, (120, 4.9)))) and of(unclosed, lids(blinking(*weak, (120, 5.1))))
 
 
 def test_the_lid_that_is_farther_open_counts() -> None:

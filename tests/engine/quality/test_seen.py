@@ -7,10 +7,12 @@ import pytest
 
 from engine.controls import measure
 from engine.errors import EditError
+from engine.formats import read_take
 from engine.formats.audio import Audio
-from engine.quality import sound_of
+from engine.lab.performer import demo
+from engine.quality import flags_of, sound_of
 from engine.quality.seen import LIDS, drops, lowest, rounded, seen_of, strengths
-from engine.take import SHAPES, Take
+from engine.take import SHAPES, Take, runs
 from tests.engine.quality.takes import looked
 
 
@@ -101,3 +103,11 @@ def test_a_take_beside_its_original_is_seen_with_both() -> None:
     assert seen_of(replace(now, rotations=turned * 0)).rotations is None
     with pytest.raises(EditError, match="The original has 1 frame, the take 20"):
         seen_of(now, Take(np.zeros((1, len(SHAPES))), 25.0))
+
+
+def test_a_lost_frame_that_was_filled_is_not_flagged() -> None:
+    take = read_take(demo.BUNDLED)
+    (start, stop), *_ = runs(take.lost)
+    filled = take.with_rows(start, take.weights[start:stop] + 0.01)
+    assert "lost" in {flag.kind for flag in flags_of(seen_of(take, take))}
+    assert "lost" not in {flag.kind for flag in flags_of(seen_of(filled, take))}

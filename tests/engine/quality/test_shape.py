@@ -7,13 +7,16 @@ import pytest
 
 from engine.anatomy import EXCLUSIVE, pairs
 from engine.character import bundled
+from engine.errors import AssetError
 from engine.formats.livelink.sides import exchange
-from engine.quality import Seen
+from engine.quality import Seen, flags_of
 from engine.quality.shape import crossed_mm, crossing, impossible, out_of_range, swapped
 from engine.take import SHAPE_INDEX, SHAPES, Array
 from tests.engine.quality.takes import (
     CLOSED,
     CLOSED_FACE,
+    EVERY,
+    JAW,
     found,
     looked,
     still,
@@ -42,18 +45,19 @@ def only(weights: Array, **more: object) -> Seen:
     return replace(Seen(weights, np.zeros((len(weights), 16)), 30.0, np.zeros(len(weights), bool)), **more)
 
 
-@pytest.mark.parametrize(("value", "flagged"), [(0.51, True), (0.5, False)])
-def test_two_shapes_that_exclude_each_other_are_named_with_the_lesser_weight(value: float, flagged: bool) -> None:
+@pytest.mark.parametrize(("beyond", "flagged"), [(0.01, True), (0.0, False)])
+def test_two_shapes_that_exclude_each_other_are_named_with_the_lesser_weight(beyond: float, flagged: bool) -> None:
     for one, other, row in pairs():
         first, second, reason = EXCLUSIVE[row]
+        limit = 0.65 if second == "mouthStretch" else 0.5
         weights = np.zeros((20, len(SHAPES)))
-        weights[5:8, one], weights[5:8, other] = 0.9, value
-        weights[6, other] = value + 0.24 * flagged
+        weights[5:8, one], weights[5:8, other] = 0.9, limit + beyond
+        weights[6, other] = 0.8 if flagged else limit
         flags = list(impossible(only(weights), 0, 20))
         assert [(flag.start, flag.stop) for flag in flags] == [(5, 8)] * flagged
         if flagged:
-            assert flags[0].sentence == f"{first} and {second} are both at 0.75 or more: {reason}."
-            assert flags[0].weight == pytest.approx(0.6)
+            assert flags[0].sentence == f"{first} and {second} are both at 0.80 or more: {reason}."
+            assert flags[0].weight == pytest.approx(0.2 + 0.8 * (0.8 - limit) / (1 - limit))
 
 
 @pytest.mark.parametrize(
@@ -113,3 +117,38 @@ def test_short_takes_tell_nothing_of_their_sides() -> None:
     (flag,) = swapped(only(wrong), 0, 400)
     told = float(flag.sentence.split("correlation ")[1].rstrip(").").replace("−", "-"))
     assert told < -0.35 and flag.weight == pytest.approx(min(1.0, 0.2 + 0.8 * (-told - 0.35) / 0.55), abs=0.01)
+
+
+def test_gaze_may_go_a_little_beyond_one_as_trackers_report_it() -> None:
+    weights = still()
+    weights[50:60, SHAPE_INDEX["eyeLookInRight"]] = 1.08
+    weights[80:90, SHAPE_INDEX["mouthLeft"]] = 1.08
+    weights[120:130, SHAPE_INDEX["eyeLookInRight"]] = 1.2
+    assert found(looked(weights), "range") == [(80, 90), (120, 130)]
+
+
+def test_lips_that_are_rounded_and_wide_may_go_as_far_as_people_did() -> None:
+    weights = still() * 0.1
+    for start, strength in ((50, 0.56), (100, 0.7)):
+        for name in ("mouthFunnel", "mouthStretchLeft", "mouthStretchRight"):
+            weights[start : start + 10, SHAPE_INDEX[name]] = strength
+    weights[150:160, [SHAPE_INDEX["mouthSmileLeft"], SHAPE_INDEX["mouthFrownLeft"]]] = 0.56
+    assert found(looked(weights), "impossible") == [(100, 110), (150, 160)]
+
+
+def test_a_mouth_that_nobody_was_recorded_to_make_is_flagged_and_a_missing_prior_takes_no_other_flag_away(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    weights = still() * 0.3
+    names = ("mouthStretchLeft", "mouthStretchRight", "mouthFrownLeft", "mouthLeft", "mouthUpperUpRight", "jawOpen")
+    weights[60:70, [SHAPE_INDEX[name] for name in names]] = 1.0
+    assert found(looked(weights), "unlike") == [(60, 70)]
+    text = next(flag.sentence for flag in flags_of(looked(weights), EVERY) if flag.kind == "unlike")
+    assert "further from its mean pose than all 4,000 recorded faces" in text
+
+    def missing() -> None:
+        raise AssetError("The model file is missing.", "Train it.")
+
+    monkeypatch.setattr("engine.quality.shape.recorded", missing)
+    weights[200, JAW] += 0.5
+    assert not found(looked(weights), "unlike") and found(looked(weights), "spike") == [(200, 201)]

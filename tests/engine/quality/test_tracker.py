@@ -119,13 +119,13 @@ def test_a_spike_beside_a_lost_frame_is_none_and_the_furthest_counts() -> None:
     assert np.flatnonzero(quiet).tolist() == [20] and quiet[20] == pytest.approx(0.08)
 
 
-def test_a_freeze_of_two_frames_counts_and_weighs_by_its_length() -> None:
+def test_a_freeze_of_five_frames_counts_and_weighs_by_its_length() -> None:
     weights = still()
-    weights[51] = weights[50]
-    weights[101:103] = weights[100]
+    weights[51:55] = weights[50]
+    weights[101:106] = weights[100]
     weights[151:166] = weights[150]
     flags = of(frozen, only(weights))
-    assert flags == [(101, 103, round(0.2 + 0.8 * (2 / 30) / 0.5, 6)), (151, 166, 1.0)]
+    assert flags == [(101, 106, round(0.2 + 0.8 * (5 / 30) / 0.5, 6)), (151, 166, 1.0)]
     gone = np.arange(300) == 102
     assert of(frozen, only(weights, lost=gone)) == [flags[1]]
 
@@ -209,3 +209,10 @@ def test_a_head_that_passes_behind_does_not_jump_and_one_of_few_frames_neither()
         flag[:2]
         for flag in of(head, only(still(4), rotations=np.radians([[0.0] * 3, [0] * 3, [90, 0, 0], [90, 0, 0]])))
     ] == [(2, 3)]
+
+
+@pytest.mark.parametrize(("fps", "held", "frozen"), [(30.0, 4, 0), (30.0, 5, 1), (60.0, 8, 0), (60.0, 9, 1)])
+def test_a_pose_is_frozen_when_it_is_held_for_long_enough_at_any_rate(fps: float, held: int, frozen: int) -> None:
+    weights = still()
+    weights[100 : 100 + held] = weights[99]
+    assert len(found(replace(looked(weights), fps=fps), "frozen")) == frozen

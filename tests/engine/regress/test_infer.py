@@ -6,7 +6,7 @@ import torch
 
 from engine.regress.areas import AREAS, EXTENDED_AREAS
 from engine.regress.infer import Regressor
-from engine.regress.network import AreaNetwork, UNetConfig
+from engine.regress.network import network_of
 from engine.take import SHAPES
 
 
@@ -16,8 +16,8 @@ def regressor() -> Regressor:
     torch.manual_seed(4)
     networks = {}
     for area in (*AREAS, *EXTENDED_AREAS):
-        inputs, outputs = len(area.controls), len(area.shape_columns)
-        network = AreaNetwork(UNetConfig(inputs, outputs), UNetConfig(outputs, outputs))
+        inputs = len(area.every_column)
+        network = network_of(area, widths=(32, 64, 128))
         for unet in (network.regressor, network.autoencoder):
             torch.nn.init.normal_(unet.last.weight, std=0.3)
         network.regressor.scale.fill_(20.0)
@@ -26,7 +26,7 @@ def regressor() -> Regressor:
     return Regressor(networks)
 
 
-@pytest.mark.parametrize("controls", [8, 14])
+@pytest.mark.parametrize("controls", [8, 16])
 @pytest.mark.parametrize("full", [True, False])
 @pytest.mark.parametrize(("start", "stop"), [(0, 5), (100, 101), (97, 160), (233, 251), (0, 251)])
 def test_a_range_equals_the_whole_take(regressor: Regressor, start: int, stop: int, full: bool, controls: int) -> None:
@@ -45,10 +45,19 @@ def test_the_lids_leave_gaze_alone(regressor: Regressor) -> None:
     np.testing.assert_array_equal(regressor.infer(controls)[:, gaze], 0.0)
 
 
-def test_extended_controls_change_their_own_shapes_alone(regressor: Regressor) -> None:
-    controls = np.random.default_rng(3).uniform(0, 50, (40, 14))
+def test_extended_controls_tell_every_area_more(regressor: Regressor) -> None:
+    controls = np.random.default_rng(3).uniform(0, 50, (40, 16))
     without, given = (regressor.infer(one, full=False) for one in (controls[:, :8], controls))
-    spoken = np.unique(np.concatenate([area.shape_columns for area in EXTENDED_AREAS]))
-    others = np.setdiff1d(np.arange(len(SHAPES)), spoken)
-    np.testing.assert_array_equal(given[:, others], without[:, others])
-    assert (np.abs(given[:, spoken] - without[:, spoken]).max(axis=0) > 1e-3).all()
+    changed = np.abs(given - without).max(axis=0) > 1e-3
+    for area in (*AREAS, EXTENDED_AREAS[2]):
+        assert changed[area.shape_columns].mean() > 0.5, area.name
+
+
+def test_where_the_eyes_look_is_known_of_the_take_that_is_kept(regressor: Regressor) -> None:
+    controls = np.random.default_rng(4).uniform(0, 50, (40, 8))
+    kept = np.zeros((40, len(SHAPES)))
+    kept[:, [SHAPES.index(f"eyeLookDown{side}") for side in ("Left", "Right")]] = 0.8
+    ahead, down = (regressor.infer(controls, kept=one) for one in (np.zeros_like(kept), kept))
+    lids = AREAS[2].shape_columns
+    assert np.abs(ahead[:, lids] - down[:, lids]).max() > 0.01
+    np.testing.assert_array_equal(down[:, kept[0] > 0], 0.8)

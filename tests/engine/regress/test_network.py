@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import torch
 
-from engine.regress.network import BEYOND, AreaNetwork, UNetConfig
+from engine.regress.network import BEYOND, AreaNetwork
+from engine.regress.unet import UNetConfig
 
 
 def _tempered(controls: torch.Tensor) -> AreaNetwork:

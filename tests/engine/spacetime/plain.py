@@ -15,14 +15,14 @@ def stacked(system: System, source: Array, places: Array | None) -> tuple[sparse
     frames, count = system.frames, system.count
     difference = sparse.diags_array([-np.ones(frames), np.ones(frames)], offsets=[0, 1], shape=(frames - 1, frames))
     every = sparse.eye_array(frames)
-    believed = np.ones_like(source[1:]) if system.believed is None else np.sqrt(system.believed)
-    believed = believed.ravel()
+    confidence = np.ones_like(source[1:]) if system.confidence is None else np.sqrt(system.confidence)
+    confidence = confidence.ravel()
     own = np.sqrt(system.stiffness * (system.basis**2).sum(axis=0).mean())
     rows = [
-        sparse.diags_array(believed) @ sparse.kron(difference, system.basis),
+        sparse.diags_array(confidence) @ sparse.kron(difference, system.basis),
         own * sparse.kron(difference, sparse.eye_array(count)),
     ]
-    sides = [believed * np.diff(source, axis=0).ravel(), np.zeros((frames - 1) * count)]
+    sides = [confidence * np.diff(source, axis=0).ravel(), np.zeros((frames - 1) * count)]
     if system.prior is not None:
         rows.append(np.sqrt(system.alpha) * sparse.kron(every, system.prior.factor))
         sides.append(np.sqrt(system.alpha) * np.tile(system.prior.offset, frames))

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from engine.spacetime.blocks import Tuning
 from engine.spacetime.prior import from_shapes
 from engine.spacetime.solve import MovementMatcher
 from engine.spacetime.system import System
@@ -15,8 +16,8 @@ from tests.engine.spacetime.systems import PINS, basis_of, held_at, positions_of
 def test_block_path_equals_the_assembled_system(shapes: int, pinned: list[int]) -> None:
     frames, basis = 20, basis_of(shapes)
     position, places = positions_of(frames, shapes, by_frame=True)
-    believed = (np.random.default_rng(5).random((frames - 1, 20)) > 0.1).astype(float).repeat(3, axis=1)
-    system = System(basis, frames, from_shapes(basis), 0.01, position, believed)
+    confidence = (np.random.default_rng(5).random((frames - 1, 20)) > 0.1).astype(float).repeat(3, axis=1)
+    system = System(basis, frames, from_shapes(basis), 0.01, position, confidence)
     held, values = held_at(frames, shapes, pinned)
     held[12, ::3] = held[4, 1] = True  # single weights
     matcher = MovementMatcher(system, held)
@@ -35,6 +36,6 @@ def test_block_path_at_any_length(frames: int, monkeypatch: pytest.MonkeyPatch) 
     held[-1, 3] = True
     found = MovementMatcher(system, held).solve(source_of(frames), places=places, values=values)
     np.testing.assert_allclose(found, plain.solve(system, source_of(frames), held, values, places), atol=1e-6)
-    monkeypatch.setattr("engine.spacetime.blocks.KEPT", 1)  # a take too long to keep the factor
+    monkeypatch.setattr("engine.spacetime.blocks.TUNING", Tuning(kept_frames=1))  # a take too long to keep the factor
     again = MovementMatcher(system, held).solve(source_of(frames), places=places, values=values)
     np.testing.assert_array_equal(again, found)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
+from engine.spacetime import bounded
 from engine.spacetime.matching import Bounds
 from engine.spacetime.prior import from_shapes
 from engine.spacetime.solve import MovementMatcher
@@ -15,7 +16,7 @@ from tests.engine.spacetime.systems import basis_of, held_at, source_of
 @pytest.mark.parametrize("rounds", [80, 1], ids=["exchange", "newton"])
 @pytest.mark.parametrize("pinned", [[], [0], [4, 5]])
 def test_bounds_equal_bounded_least_squares(pinned: list[int], rounds: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.spacetime.bounded.ROUNDS", rounds)
+    monkeypatch.setattr(bounded, "TUNING", bounded.Tuning(rounds=rounds))
     frames, basis = 9, basis_of(6, markers=5)
     system = System(basis, frames, from_shapes(basis), 0.05)
     held, values = held_at(frames, 6, pinned)
@@ -41,7 +42,7 @@ def test_what_lies_within_its_bounds_is_left_as_it_is_and_rounds_are_told() -> N
     )
     np.testing.assert_array_equal(wide, free)
     shares: list[float] = []
-    matcher = MovementMatcher(system, held, bounds=Bounds(-0.2, 0.3), tell=shares.append)
+    matcher = MovementMatcher(system, held, bounds=Bounds(-0.2, 0.3), progress=shares.append)
     found = matcher.solve(4 * source_of(9, 5), values=values)
     assert shares == sorted(shares) and all(0 <= share <= 1 for share in shares) and len(shares) >= 1
     assert found[1:].min() == -0.2 and found[1:].max() == 0.3

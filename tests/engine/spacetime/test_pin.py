@@ -119,6 +119,8 @@ def test_a_take_of_one_frame_can_be_pinned() -> None:
     ("pins", "frames", "says"),
     [
         ({80: SMILE}, (63, 75), "not within the range"),
+        ({75: SMILE}, (63, 75), "pin at frame 75 is not within the range 63:75"),
+        ({62: SMILE}, (63, 75), "pin at frame 62"),
         ({68: SMILE}, (63, 10**6), "not within the take"),
         ({}, (63, 75), "no pin"),
         ({68: {"grin": 1.0}}, (63, 75), "'grin'"),

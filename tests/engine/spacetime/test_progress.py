@@ -25,7 +25,7 @@ def source() -> Source:
 
 def test_the_share_rises_to_one_and_the_result_is_the_same(source: Source) -> None:
     shares: list[float] = []
-    told = retarget(source, bundled(), tell=shares.append)
+    told = retarget(source, bundled(), progress=shares.append)
     assert shares == sorted(shares) and 0.5 < shares[-1] <= 1 and len(shares) > 2
     np.testing.assert_array_equal(told.weights, retarget(source, bundled()).weights)
 
@@ -39,7 +39,7 @@ def test_it_stops_at_the_next_word(source: Source, monkeypatch: pytest.MonkeyPat
         raise Enough
 
     with pytest.raises(Enough):
-        retarget(source, bundled(), tell=tell)
+        retarget(source, bundled(), progress=tell)
     assert len(asked) <= 1
 
 

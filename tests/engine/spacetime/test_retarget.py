@@ -11,7 +11,7 @@ from engine.formats.markers.capture import Markers
 from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import standard
 from engine.spacetime.matching import Matching
-from engine.spacetime.retarget import correspond, match, retarget
+from engine.spacetime.retarget import Tuning, correspond, match, retarget
 from engine.spacetime.source import Source, from_markers, from_take
 from engine.take import SHAPE_INDEX, Array, Take
 from tests.engine.spacetime.captures import apart, captured
@@ -121,5 +121,5 @@ def test_a_jaw_at_its_bound_is_solved_around_not_cut_off(monkeypatch: pytest.Mon
         return float((np.diff(weights @ pair.basis.T - pair.motion, axis=0) ** 2).sum())
 
     solved = speed_error()
-    monkeypatch.setattr("engine.spacetime.retarget.JAW_ROUNDS", 0)
+    monkeypatch.setattr("engine.spacetime.retarget.TUNING", Tuning(jaw_rounds=0))
     assert solved < 0.8 * speed_error()

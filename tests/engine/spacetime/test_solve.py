@@ -19,7 +19,7 @@ def test_a_motion_of_the_shapes_comes_back() -> None:
     np.testing.assert_allclose(found, weights, atol=1e-5)
 
 
-@pytest.mark.parametrize("believed", [None, np.ones((9, 60))], ids=["modes", "blocks"])
-def test_a_motion_that_starts_nowhere_is_refused(believed: Array | None) -> None:
+@pytest.mark.parametrize("confidence", [None, np.ones((9, 60))], ids=["modes", "blocks"])
+def test_a_motion_that_starts_nowhere_is_refused(confidence: Array | None) -> None:
     with pytest.raises(EditError, match="starts"):
-        MovementMatcher(System(basis_of(18), 10, believed=believed))
+        MovementMatcher(System(basis_of(18), 10, confidence=confidence))

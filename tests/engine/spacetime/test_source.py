@@ -29,11 +29,11 @@ def test_head_motion_is_taken_out_and_given_back(played: Source) -> None:
 def test_steps_into_a_gap_count_less_the_longer_it_is() -> None:
     motion = np.arange(10.0)[:, None, None] * np.ones((10, 3, 3))
     motion[4, 0] = motion[3:7, 1] = motion[:2, 2] = motion[8:, 2] = np.nan
-    filled, believed = bridge(motion)
+    filled, confidence = bridge(motion)
     np.testing.assert_allclose(filled[:, :2], np.arange(10.0)[:, None, None] * np.ones((1, 2, 3)))
-    np.testing.assert_allclose(believed[:, 0], [1, 1, 1, 0.25, 0.25, 1, 1, 1, 1])
-    np.testing.assert_allclose(believed[:, 1], [1, 1, 0.04, 0.04, 0.04, 0.04, 0.04, 1, 1])
-    np.testing.assert_allclose(believed[:, 2], [0, 0, 1, 1, 1, 1, 1, 0, 0])
+    np.testing.assert_allclose(confidence[:, 0], [1, 1, 1, 0.25, 0.25, 1, 1, 1, 1])
+    np.testing.assert_allclose(confidence[:, 1], [1, 1, 0.04, 0.04, 0.04, 0.04, 0.04, 1, 1])
+    np.testing.assert_allclose(confidence[:, 2], [0, 0, 1, 1, 1, 1, 1, 0, 0])
 
 
 def test_a_neutral_frame_outside_the_capture_is_refused(played: Source) -> None:
@@ -98,8 +98,8 @@ def test_angles_of_a_turned_capture_are_about_the_head_s_own_axes(played: Source
 def test_a_marker_that_was_never_seen_is_held_at_rest_and_not_believed() -> None:
     motion = np.random.default_rng(0).normal(size=(6, 2, 3))
     motion[:, 1] = np.nan
-    filled, believed = bridge(motion)
+    filled, confidence = bridge(motion)
     np.testing.assert_array_equal(filled[:, 0], motion[:, 0])
-    assert not filled[:, 1].any() and not believed[:, 1].any() and (believed[:, 0] == 1).all()
+    assert not filled[:, 1].any() and not confidence[:, 1].any() and (confidence[:, 0] == 1).all()
     with pytest.raises(EditError, match="Frame -1"):
         from_markers(Markers(np.zeros((3, 2, 3)), ("a", "b"), 30.0), neutral_frame=-1)

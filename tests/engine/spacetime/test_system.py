@@ -5,7 +5,7 @@ import pytest
 
 from engine.errors import EditError
 from engine.spacetime.prior import from_shapes
-from engine.spacetime.system import UNSEEN, Position, System
+from engine.spacetime.system import TUNING, Position, System
 from tests.engine.spacetime import plain
 from tests.engine.spacetime.systems import basis_of, positions_of, source_of
 
@@ -15,15 +15,15 @@ FRAMES, SHAPES = 7, 5
 def systems() -> dict[str, System]:
     basis = basis_of(SHAPES, markers=4)
     by_frame, alike = positions_of(FRAMES, SHAPES, by_frame=True)[0], positions_of(FRAMES, SHAPES, by_frame=False)[0]
-    believed = np.random.default_rng(5).choice([0.0, 0.25, 1.0], (FRAMES - 1, 12))
+    confidence = np.random.default_rng(5).choice([0.0, 0.25, 1.0], (FRAMES - 1, 12))
     prior = from_shapes(basis, about_rest=False)
     return {
         "plain": System(basis, FRAMES),
         "prior": System(basis, FRAMES, prior, 0.3),
         "places": System(basis, FRAMES, None, 0.0, alike),
         "places by frame": System(basis, FRAMES, prior, 0.3, by_frame),
-        "doubted": System(basis, FRAMES, prior, 0.3, by_frame, believed),
-        "stiff": System(basis, FRAMES, prior, 0.3, alike, believed, stiffness=0.7),
+        "doubted": System(basis, FRAMES, prior, 0.3, by_frame, confidence),
+        "stiff": System(basis, FRAMES, prior, 0.3, alike, confidence, stiffness=0.7),
     }
 
 
@@ -62,7 +62,7 @@ def test_frames_are_alike_unless_places_or_doubts_differ() -> None:
         "doubted": False,
         "stiff": False,
     }
-    assert UNSEEN < 1e-6 and systems()["plain"].count == SHAPES
+    assert TUNING.stiffness < 1e-6 and systems()["plain"].count == SHAPES
 
 
 def test_shapes_that_move_a_marker_without_end_are_refused() -> None:

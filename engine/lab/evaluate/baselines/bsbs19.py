@@ -84,15 +84,15 @@ def _train_area(material: Material) -> tuple[BSBS19, float]:
     seen_columns = torch.tensor(material.area.control_columns)
 
     def regressed(controls: Tensor, weights: Tensor) -> Tensor:
-        made = network.regressor(controls - network.mean)
-        return mse_loss(made, weights) + BETA * _size(network.regressor)
+        result = network.regressor(controls - network.mean)
+        return mse_loss(result, weights) + BETA * _size(network.regressor)
 
     def cleaned(controls: Tensor, weights: Tensor) -> Tensor:
-        made = network(salt_and_pepper(controls, low, high, NOISE, noise))
-        whole = torch.zeros(len(made), len(SHAPES), made.shape[2])
-        error = [distances(whole.index_copy(1, columns, part).mT)[..., seen_columns] for part in (made, weights)]
+        result = network(salt_and_pepper(controls, low, high, NOISE, noise))
+        whole = torch.zeros(len(result), len(SHAPES), result.shape[2])
+        error = [distances(whole.index_copy(1, columns, part).mT)[..., seen_columns] for part in (result, weights)]
         distance = mse_loss(error[0] / MM_PER_UNIT, error[1] / MM_PER_UNIT)
-        return mse_loss(made, weights) + ALPHA * distance + BETA * _size(network.autoencoder)
+        return mse_loss(result, weights) + ALPHA * distance + BETA * _size(network.autoencoder)
 
     fit(network.regressor, regressed, material, epochs=EPOCHS[0], key=21)
     network.regressor.requires_grad_(False)

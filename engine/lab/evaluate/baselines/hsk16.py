@@ -12,7 +12,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import mse_loss
 
-from engine.lab.evaluate.baselines.parts import Areas, Material, Report, fit, restore
+from engine.lab.evaluate.baselines.parts import Areas, Material, Report, columns_of, fit, restore
 from engine.regress.areas import Area
 
 UNITS, HIDDEN = 128, 64
@@ -75,7 +75,7 @@ class HSK16(nn.Module):
         return mse_loss(made, weights) + LATENT_SHARE * mse_loss(latent, encoded)
 
 
-def _train_area(material: Material, width: int) -> tuple[HSK16, float]:
+def _train_area(material: Material, width: int, epochs: tuple[int, int]) -> tuple[HSK16, float]:
     torch.manual_seed(material.source.seed)
     controls, weights = material.pick(material.source.first)
     network = HSK16(controls.shape[1], weights.shape[1], width)
@@ -89,35 +89,37 @@ def _train_area(material: Material, width: int) -> tuple[HSK16, float]:
         sparse = torch.stack([parameter.abs().mean() for parameter in motion.parameters()]).mean()
         return mse_loss(motion(centred), centred) + SPARSITY * sparse
 
-    fit(motion, held, material, epochs=EPOCHS[0], key=11, batch=32)
+    fit(motion, held, material, epochs=epochs[0], key=11, batch=32)
     motion.requires_grad_(False)
 
     def regressed(controls: Tensor, weights: Tensor) -> Tensor:
         return mse_loss(network(controls), weights)
 
-    best = fit(network, network.latent_error, material, epochs=EPOCHS[1], key=12, score=regressed, batch=32)
+    best = fit(network, network.latent_error, material, epochs=epochs[1], key=12, score=regressed, batch=32)
     return network, best
 
 
-def train(materials: list[Material], report: Report) -> tuple[dict[str, nn.Module], dict[str, Any]]:
+def train(
+    materials: list[Material], report: Report, *, epochs: tuple[int, int] = EPOCHS
+) -> tuple[dict[str, nn.Module], dict[str, Any]]:
     """Train each area with each filter width and keep the one that validates best; returns modules and figures."""
     modules: dict[str, nn.Module] = {}
     figures: dict[str, Any] = {}
     for material in materials:
         name = material.area.name
         for width in WIDTHS:
-            network, error = _train_area(material, width)
+            network, error = _train_area(material, width, epochs)
             report(f"hsk16 {name}: filters of {width} frames, validation mse {error:.5f}")
             if name not in modules or error < figures[name]["mse"]:
                 modules[name], figures[name] = network, {"width": width, "mse": error}
     return modules, figures
 
 
-def load() -> Areas:
-    """Return the baseline that ships."""
+def load(*, every: bool = False) -> Areas:
+    """Return the baseline that ships, or the same with the extended controls."""
 
     def empty(area: Area, width: int) -> HSK16:
-        return HSK16(len(area.controls), len(area.shape_columns), width)
+        return HSK16(len(columns_of(area, every=every)), len(area.shape_columns), width)
 
-    modules = restore("hsk16", lambda area, figures: empty(area, figures["width"]))
-    return Areas(modules, alignment=POOL)
+    modules = restore("hsk16_16" if every else "hsk16", lambda area, figures: empty(area, figures["width"]))
+    return Areas(modules, alignment=POOL, every=every)

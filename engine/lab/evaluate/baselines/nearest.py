@@ -35,12 +35,12 @@ class Nearest:
 
     def infer(self, controls: Array) -> Array:
         """Return weights, (frames, 52), of controls, (frames, 8) in mm; shapes of no area are zero."""
-        made = np.zeros((len(controls), len(SHAPES)))
+        result = np.zeros((len(controls), len(SHAPES)))
         for area in AREAS:
             tree, scale, weights = self._trees[area.name]
             _, index = tree.query(_in_context(controls[:, area.control_columns] / scale))
-            made[:, area.shape_columns] = weights[index]
-        return made
+            result[:, area.shape_columns] = weights[index]
+        return result
 
 
 def _in_context(curves: Array) -> Array:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import torch
 from torch import Tensor, nn
 
@@ -24,33 +25,44 @@ Report = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Material:
-    """What one area's baseline is trained and selected on: the data and the splits of our own networks."""
+    """What one area's baseline is trained and selected on: the data and the splits of our own networks.
+
+    Attributes
+    ----------
+    every : whether it sees the extended controls too that our networks see where they are given
+    """
 
     area: Area
     source: Source
     valid: Windows
+    every: bool = False
 
     def pick(self, windows: Windows) -> tuple[Tensor, Tensor]:
         """Return the area's controls and weights, (windows, n, frames) each."""
-        return windows.controls[:, self.area.control_columns], windows.weights[:, self.area.shape_columns]
+        return windows.controls[:, columns_of(self.area, every=self.every)], windows.weights[:, self.area.shape_columns]
+
+
+def columns_of(area: Area, *, every: bool) -> npt.NDArray[np.int64]:
+    """Return the controls that an area's baseline sees, with or without the extended ones."""
+    return area.every_column if every else area.control_columns
 
 
 class Areas:
     """One module for each area, (batch, controls, frames) -> (batch, shapes, frames), as a `Baseline`."""
 
-    def __init__(self, modules: Mapping[str, nn.Module], *, alignment: int) -> None:
-        self.modules, self._alignment = dict(modules), alignment
+    def __init__(self, modules: Mapping[str, nn.Module], *, alignment: int, every: bool = False) -> None:
+        self.modules, self._alignment, self._every = dict(modules), alignment, every
         for module in self.modules.values():
             module.eval()
 
     def infer(self, controls: Array) -> Array:
-        """Return weights, (frames, 52), of controls, (frames, 8) in mm; shapes of no area are zero."""
+        """Return weights, (frames, 52), of controls, (frames, 8 or 16); shapes of no area are zero."""
         frames = len(controls)
-        held = np.pad(controls, ((0, -frames % self._alignment), (0, 0)), mode="edge")
+        padded = np.pad(controls, ((0, -frames % self._alignment), (0, 0)), mode="edge")
         weights = np.zeros((frames, len(SHAPES)))
         with torch.inference_mode():
             for area in AREAS:
-                curves = torch.from_numpy(held[:, area.control_columns].T.astype(np.float32))
+                curves = torch.from_numpy(padded[:, columns_of(area, every=self._every)].T.astype(np.float32))
                 weights[:, area.shape_columns] = self.modules[area.name](curves[None])[0].numpy().T[:frames]
         return weights
 

@@ -7,7 +7,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from engine.lab.evaluate.baselines.parts import Areas, Material, Report, restore
+from engine.lab.evaluate.baselines.parts import Areas, Material, Report, columns_of, restore
 from engine.regress.areas import Area
 
 PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1.0)  # of standardised controls; the best on validation is taken
@@ -49,7 +49,7 @@ def train(materials: list[Material], report: Report) -> tuple[dict[str, nn.Modul
     modules: dict[str, nn.Module] = {}
     figures: dict[str, Any] = {}
     for material in materials:
-        module = _empty(material.area)
+        module = _empty(material.area, every=material.every)
         controls, weights = material.pick(material.source.first)
         seen, truth = material.pick(material.valid)
         errors = {}
@@ -65,10 +65,11 @@ def train(materials: list[Material], report: Report) -> tuple[dict[str, nn.Modul
     return modules, figures
 
 
-def _empty(area: Area) -> Ridge:
-    return Ridge(len(area.controls), len(area.shape_columns))
+def _empty(area: Area, *, every: bool) -> Ridge:
+    return Ridge(len(columns_of(area, every=every)), len(area.shape_columns))
 
 
-def load() -> Areas:
-    """Return the baseline that ships."""
-    return Areas(restore("ridge", lambda area, _: _empty(area)), alignment=1)
+def load(*, every: bool = False) -> Areas:
+    """Return the baseline that ships, or the same with the extended controls."""
+    modules = restore("ridge_16" if every else "ridge", lambda area, _: _empty(area, every=every))
+    return Areas(modules, alignment=1, every=every)

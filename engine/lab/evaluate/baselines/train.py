@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,14 +22,16 @@ def train(data: Path, out: Path = MODELS, report: Report = print) -> dict[str, A
     """Train every baseline that ships and write it below `out`; returns their validation figures."""
     settings = Settings(window=WINDOW)
     training, validation, _ = split(data)
-    materials = []
+    known = []
     for area in AREAS:
         valid = [piece.weights for piece in (whole_faces(validation) if area.needs_whole_face else validation)]
         material = material_of(area, training, settings)
-        materials.append(Material(area, material, cut(valid, length=WINDOW, overlap=0.5)))
+        known.append(Material(area, material, cut(valid, length=WINDOW, overlap=0.5)))
     found: dict[str, Any] = {}
     for name in NAMES:
-        modules, figures = importlib.import_module(f"engine.lab.evaluate.baselines.{name}").train(materials, report)
+        materials = [replace(material, every=name.endswith("_16")) for material in known]
+        module = importlib.import_module(f"engine.lab.evaluate.baselines.{name.removesuffix('_16')}")
+        modules, figures = module.train(materials, report)
         path = save(name, modules, figures, out / "baselines")
         card = Card(
             kind=name,

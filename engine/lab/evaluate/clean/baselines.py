@@ -28,10 +28,10 @@ def exponential(share: float) -> Filter:
     """Return ``y[n] = share x[n] + (1 - share) y[n - 1]`` (BSS20b section 4.3)."""
 
     def apply(tracked: Tracked, times_s: Array) -> Array:
-        made = tracked.weights.copy()
-        for index in range(1, len(made)):
-            made[index] = share * made[index] + (1 - share) * made[index - 1]
-        return made
+        result = tracked.weights.copy()
+        for index in range(1, len(result)):
+            result[index] = share * result[index] + (1 - share) * result[index - 1]
+        return result
 
     return apply
 
@@ -73,14 +73,14 @@ class OneEuro:
 
     def __call__(self, tracked: Tracked, times_s: Array) -> Array:
         """Filter."""
-        made = tracked.weights.copy()
-        speed = np.zeros(made.shape[1])
+        result = tracked.weights.copy()
+        speed = np.zeros(result.shape[1])
         for index, step in enumerate(np.diff(times_s), start=1):
             change = (tracked.weights[index] - tracked.weights[index - 1]) / step
             speed += _share(self.speed_cutoff_hz, step) * (change - speed)
             share = _share(self.cutoff_hz + self.beta * np.abs(speed), step)
-            made[index] = made[index - 1] + share * (tracked.weights[index] - made[index - 1])
-        return made
+            result[index] = result[index - 1] + share * (tracked.weights[index] - result[index - 1])
+        return result
 
 
 def _share(cutoff_hz: float | Array, step_s: float) -> Array:
@@ -102,8 +102,8 @@ class Kalman:
 
     def __call__(self, tracked: Tracked, times_s: Array) -> Array:
         """Filter; all shapes share one covariance, since they share its parameters."""
-        made = tracked.weights.copy()
-        state = np.stack([made[0], np.zeros_like(made[0])])
+        result = tracked.weights.copy()
+        state = np.stack([result[0], np.zeros_like(result[0])])
         covariance = np.diag([self.noise, 1.0])
         for index, step in enumerate(np.diff(times_s), start=1):
             move = np.array([[1.0, step], [0.0, 1.0]])
@@ -114,5 +114,5 @@ class Kalman:
                 state = state + np.outer(gain, tracked.weights[index] - state[0])
                 covariance = covariance - np.outer(gain, covariance[0])
             state[0] = np.clip(state[0], 0.0, 1.0)
-            made[index] = state[0]
-        return made
+            result[index] = state[0]
+        return result

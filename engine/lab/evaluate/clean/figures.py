@@ -20,12 +20,12 @@ CLOSE_LOOK_S = 4.0
 
 def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
     """Draw lids and lips of the dirty recorded takes, or of a folder's, before and after cleaning; lost runs shaded."""
-    made = []
+    result = []
     for take, whole_face in load_takes(data or data_folder()):
         if whole_face and (data is not None or Path(take.name).stem in DIRTY):
             report(f"drawing {take.name}")
-            made.append(_draw(take, folder / f"clean_{Path(take.name).stem}.png"))
-    return made
+            result.append(_draw(take, folder / f"clean_{Path(take.name).stem}.png"))
+    return result
 
 
 def _draw(take: Take, path: Path) -> Path:

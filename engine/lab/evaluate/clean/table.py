@@ -40,8 +40,13 @@ def table(data: Path | None, report: Report) -> list[Row]:
     for fps in RATES_FPS:
         spoilt = [item for seed in SEEDS for item in spoil(takes, fps, seed=seed)]
         for name, method in methods.items():
-            made = [method(item.tracked, item.times_s) for item in spoilt]
-            row: Row = {"method": name, "fps": int(fps), **figures_of(spoilt, made), "looks_ahead": name in LOOKS_AHEAD}
+            result = [method(item.tracked, item.times_s) for item in spoilt]
+            row: Row = {
+                "method": name,
+                "fps": int(fps),
+                **figures_of(spoilt, result),
+                "looks_ahead": name in LOOKS_AHEAD,
+            }
             rows.append(row)
         report(f"{'changing rate' if fps == CHANGING else f'{fps:g} fps'}: {len(methods)} methods")
     return rows
@@ -76,17 +81,17 @@ def lstm(tracked: Tracked, times_s: Array) -> Array:
     return run(tracked.weights, tracked.lost, times_s, bundled())
 
 
-def figures_of(spoilt: list[Spoilt], made: list[Array]) -> dict[str, Any]:
+def figures_of(spoilt: list[Spoilt], result: list[Array]) -> dict[str, Any]:
     """Return the metrics over all performances; frames count alike, whichever take they are of."""
-    pairs = list(zip(spoilt, made, strict=True))
-    blinks = np.sum([events(item.truth, one, item.times_s, _blinking) for item, one in pairs], axis=0)
-    closures = np.sum([events(item.truth, one, item.times_s, _lips_closed) for item, one in pairs], axis=0)
-    lags = [lag_ms(one, item.truth, item.times_s) for item, one in pairs]
+    pairs = list(zip(spoilt, result, strict=True))
+    blinks = np.sum([events(item.truth, each, item.times_s, _blinking) for item, each in pairs], axis=0)
+    closures = np.sum([events(item.truth, each, item.times_s, _lips_closed) for item, each in pairs], axis=0)
+    lags = [lag_ms(each, item.truth, item.times_s) for item, each in pairs]
     seconds = sum(float(item.times_s[-1] - item.times_s[0]) for item in spoilt)
     return {
-        "mse": _mean([np.square(one - item.truth) for item, one in pairs]),
-        "velocity_error": _mean([np.abs(_velocity(one, item) - _velocity(item.truth, item)) for item, one in pairs]),
-        "jitter": float(np.sqrt(np.concatenate([_jitter(one, item) for item, one in pairs]).mean())),
+        "mse": _mean([np.square(each - item.truth) for item, each in pairs]),
+        "velocity_error": _mean([np.abs(_velocity(each, item) - _velocity(item.truth, item)) for item, each in pairs]),
+        "jitter": float(np.sqrt(np.concatenate([_jitter(each, item) for item, each in pairs]).mean())),
         "blink_recall": _share(blinks[1], blinks[0]),
         "closure_recall": _share(closures[1], closures[0]),
         "lag_ms": float(np.nanmean(lags)) if np.isfinite(lags).any() else float("nan"),
@@ -94,12 +99,12 @@ def figures_of(spoilt: list[Spoilt], made: list[Array]) -> dict[str, Any]:
     }
 
 
-def events(truth: Array, made: Array, times_s: Array, closed: Any) -> tuple[int, int, int]:
+def events(truth: Array, result: Array, times_s: Array, closed: Any) -> tuple[int, int, int]:
     """Return how many closures the truth has, how many of them are found, and how many are found that are not there.
 
     A closure is found when half of its frames are closed; one that meets none of the truth's is false.
     """
-    true, seen = closed(truth, times_s), closed(made, times_s)
+    true, seen = closed(truth, times_s), closed(result, times_s)
     found = sum(seen[start:stop].mean() >= 0.5 for start, stop in runs(true))
     false = sum(not true[start:stop].any() for start, stop in runs(seen))
     return len(runs(true)), int(found), int(false)
@@ -124,11 +129,11 @@ def _velocity(weights: Array, item: Spoilt) -> Array:
     return np.diff(weights, axis=0) / np.diff(item.times_s)[:, None]
 
 
-def _jitter(made: Array, item: Spoilt) -> Array:
+def _jitter(result: Array, item: Spoilt) -> Array:
     """Return squared second differences where the truth rests and shows something."""
     rests = np.abs(_velocity(item.truth, item)) < RESTING_PER_S
     rests = rests[1:] & rests[:-1] & (item.truth[1:-1] > 0.02)
-    return np.square(np.diff(made, n=2, axis=0))[rests]
+    return np.square(np.diff(result, n=2, axis=0))[rests]
 
 
 def _mean(parts: list[Array]) -> float:

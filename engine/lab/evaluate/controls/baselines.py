@@ -42,8 +42,8 @@ class HSK16(nn.Module):
 
     def forward(self, controls: Tensor) -> Tensor:
         """Return weights, (batch, 52, frames), of standardised controls, (batch, controls, frames)."""
-        made: Tensor = self.decode(self.regress(controls))
-        return made
+        result: Tensor = self.decode(self.regress(controls))
+        return result
 
     def loss(self, controls: Tensor, weights: Tensor, stage: int) -> Tensor:
         """First the autoencoder learns to hold motion, then, held fast, controls are regressed to it."""
@@ -65,8 +65,8 @@ class BSBS19(nn.Module):
 
     def forward(self, controls: Tensor) -> Tensor:
         """Return weights, (batch, 52, frames), of standardised controls, (batch, controls, frames)."""
-        made: Tensor = self.autoencoder(self.regressor(controls))
-        return made
+        result: Tensor = self.autoencoder(self.regressor(controls))
+        return result
 
     def loss(self, controls: Tensor, weights: Tensor, stage: int) -> Tensor:
         """Regression first; then both, under salt and pepper on a fifth of the controls in half the windows."""
@@ -96,10 +96,12 @@ class Regressor:
     def infer(self, controls: Array) -> Array:
         """Return weights, (frames, 52) in 0..1, of all eight control curves, (frames, 8) in mm."""
         frames, columns = len(controls), [CONTROL_INDEX[name] for name in self.controls]
-        held = np.pad((controls[:, columns] - self.mean) / self.scale, ((0, -frames % ALIGNMENT), (0, 0)), mode="edge")
+        padded = np.pad(
+            (controls[:, columns] - self.mean) / self.scale, ((0, -frames % ALIGNMENT), (0, 0)), mode="edge"
+        )
         with torch.inference_mode():
-            made = self.network(torch.tensor(held.T[None], dtype=torch.float32))[0].numpy().T[:frames]
-        return np.asarray(np.clip(made.astype(np.float64), 0.0, 1.0))
+            result = self.network(torch.tensor(padded.T[None], dtype=torch.float32))[0].numpy().T[:frames]
+        return np.asarray(np.clip(result.astype(np.float64), 0.0, 1.0))
 
 
 def load(name: str) -> Regressor:
@@ -127,8 +129,8 @@ def train(data: Path, out: Path = MODELS, report: Report = print) -> dict[str, f
             "scale": torch.tensor(regressor.scale),
         }
         tensors |= {f"{name}.{key}": value for key, value in state.items()}
-        made = [regressor.infer(bundled_measurer().measure(weights)) for weights in valid]
-        error = float(np.concatenate([(a - b) ** 2 for a, b in zip(made, valid, strict=True)]).mean())
+        result = [regressor.infer(bundled_measurer().measure(weights)) for weights in valid]
+        error = float(np.concatenate([(a - b) ** 2 for a, b in zip(result, valid, strict=True)]).mean())
         figures[name] = round(error, 5)
         report(f"{name} with three controls: validation mse {error:.5f}")
     save_model(out / "controls.safetensors", tensors, kind="controls", config={})
@@ -150,7 +152,7 @@ def _fitted(name: str, chosen: tuple[str, ...], material: Sequence[Performance])
     torch.manual_seed(SEED)
     rng = np.random.default_rng(SEED)
     columns = [CONTROL_INDEX[control] for control in chosen]
-    measured = bundled_measurer().measure(np.concatenate([one.weights[::5] for one in material]))[:, columns]
+    measured = bundled_measurer().measure(np.concatenate([each.weights[::5] for each in material]))[:, columns]
     mean, scale = measured.mean(axis=0), measured.std(axis=0)
     network = KINDS[name](len(chosen))
     for stage in (0, 1):

@@ -18,11 +18,11 @@ def figures(data: Path | None, folder: Path, report: Report) -> list[Path]:
     """Draw the velocity spectra of real and generated motion with three controls, beside a stretch of curves."""
     plots = pyplot()
     pieces = [piece for piece in pieces_to_measure(data) if piece.whole_face]
-    made = {name: [m(bundled_measurer().measure(p.weights)) for p in pieces] for name, m in methods("3").items()}
-    made = {"recorded": [np.asarray(piece.weights) for piece in pieces]} | made
+    result = {name: [m(bundled_measurer().measure(p.weights)) for p in pieces] for name, m in methods("3").items()}
+    result = {"recorded": [np.asarray(piece.weights) for piece in pieces]} | result
     canvas = plots.Figure(figsize=(11, 4.5), layout="constrained")
     left, right = canvas.subplots(1, 2)
-    for name, stretches in made.items():
+    for name, stretches in result.items():
         wide = 2.5 if name == "recorded" else 1.2
         left.semilogy(np.fft.rfftfreq(64, 1 / MODEL_FPS), velocity_spectrum(stretches), label=name, linewidth=wide)
         brow = stretches[0][300:500, list(SHAPES).index("browInnerUp")]

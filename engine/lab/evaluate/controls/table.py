@@ -46,14 +46,14 @@ def table(data: Path | None, report: Report) -> list[Row]:
     rows = []
     for controls in SETS:
         for name, make in methods(controls).items():
-            made = [make(bundled_measurer().measure(piece.weights)) for piece in pieces]
-            rows.append({"method": name, "controls": int(controls)} | _figures(pieces, made))
+            result = [make(bundled_measurer().measure(piece.weights)) for piece in pieces]
+            rows.append({"method": name, "controls": int(controls)} | _figures(pieces, result))
         report(f"{controls} controls: {len(pieces)} pieces")
     return rows
 
 
-def _figures(pieces: Sequence[Piece], made: Sequence[Array]) -> Row:
-    pairs = [(piece.weights, other) for piece, other in zip(pieces, made, strict=True)]
+def _figures(pieces: Sequence[Piece], result: Sequence[Array]) -> Row:
+    pairs = [(piece.weights, other) for piece, other in zip(pieces, result, strict=True)]
     off = np.concatenate([(truth - other) ** 2 for truth, other in pairs])
     moved = np.concatenate([(np.diff(truth, axis=0) - np.diff(other, axis=0)) ** 2 for truth, other in pairs])
     stretches = [
@@ -61,7 +61,7 @@ def _figures(pieces: Sequence[Piece], made: Sequence[Array]) -> Row:
         for truth, other in pairs
         for start in range(0, len(truth) - _STRETCH + 1, _STRETCH)
     ]
-    spectra = [velocity_spectrum(one) for one in (list(made), [piece.weights for piece in pieces])]
+    spectra = [velocity_spectrum(each) for each in (list(result), [piece.weights for piece in pieces])]
     return {
         "mse": float(off.mean()),
         "mse_without_gaze": float(off[:, _SEEN].mean()),
@@ -80,4 +80,4 @@ def velocity_spectrum(stretches: Sequence[Array]) -> Array:
         for start in range(0, len(weights) - 64, 32)
     ]
     window = np.hanning(64)[:, None]
-    return np.asarray(np.mean([(np.abs(np.fft.rfft(one * window, axis=0)) ** 2).mean(axis=1) for one in cut], axis=0))
+    return np.asarray(np.mean([(np.abs(np.fft.rfft(each * window, axis=0)) ** 2).mean(axis=1) for each in cut], axis=0))

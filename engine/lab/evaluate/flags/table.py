@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -51,49 +51,58 @@ def table(data: Path | None, report: Report) -> list[Row]:
     the plant did beside, and counts as neither. No take here records the head: it turns as a smooth random one would.
     """
     sources = list(_sources(data))
-    found, planted = Counter[str](), Counter[str]()
-    right, wrong, people = Counter[str](), Counter[str](), {kind: set[str]() for kind in KINDS}
-    for kind in KINDS:
-        for seen, plant, name in _planted(kind, sources):
-            planted[kind] += 1
-            people[kind].add(name)
-            flags = flags_of(plant.seen, USUAL.with_count(kind, on=True))
-            tolerance = seen.frames(TOLERANCE_S)
-            found[kind] += any(flag.kind == kind and _touches(flag, plant, tolerance) for flag in flags)
-            for flag in flags:
-                on = _touches(flag, plant, tolerance) and not (flag.kind in WHOLE and flag.kind != kind)
-                right[flag.kind] += on and flag.kind == kind
-                wrong[flag.kind] += not on
-        report(f"{kind}: {found[kind]} of {planted[kind]} found")
-    rows = [
-        _row(
-            kind,
-            people[kind],
-            found=found[kind],
-            planted=planted[kind],
-            right=right[kind],
-            wrong=wrong[kind],
-        )
-        for kind in KINDS
-    ]
+    counts = _counted(sources, report)
     unplanted = _unplanted(sources)
     minutes = sum(source.take.duration_s for source in sources) / 60 or np.nan
     rows = [
-        row | _per_minute("false_per_min", unplanted.counts[kind.name], minutes) | {"threshold": kind.threshold}
-        for row, kind in zip(rows, TABLE, strict=True)
+        counts.row(kind.name, (kind.name,))
+        | _per_minute("false_per_min", unplanted.counts[kind.name], minutes)
+        | {"threshold": kind.threshold}
+        for kind in TABLE
     ]
     usual = [kind.name for kind in TABLE if kind.on]
-    rows.append(
-        _row(
-            "all",
-            set().union(*(people[kind] for kind in usual)),
-            found=sum(found[kind] for kind in usual),
-            planted=sum(planted[kind] for kind in usual),
-            right=sum(right[kind] for kind in usual),
-            wrong=sum(wrong[kind] for kind in usual),
+    return [*rows, counts.row("all", usual), *unplanted.rows]
+
+
+@dataclass
+class _Counts:
+    """What became of the plants, by kind: found, planted, flags that are right and wrong, and whose takes they are in."""
+
+    found: Counter[str] = field(default_factory=Counter)
+    planted: Counter[str] = field(default_factory=Counter)
+    right: Counter[str] = field(default_factory=Counter)
+    wrong: Counter[str] = field(default_factory=Counter)
+    people: dict[str, set[str]] = field(default_factory=lambda: {kind: set() for kind in KINDS})
+
+    def row(self, name: str, kinds: Iterable[str]) -> Row:
+        """Return the row of some kinds together."""
+        listed = list(kinds)
+        return _row(
+            name,
+            set().union(*(self.people[kind] for kind in listed)),
+            found=sum(self.found[kind] for kind in listed),
+            planted=sum(self.planted[kind] for kind in listed),
+            right=sum(self.right[kind] for kind in listed),
+            wrong=sum(self.wrong[kind] for kind in listed),
         )
-    )
-    return rows + unplanted.rows
+
+
+def _counted(sources: list[Source], report: Report) -> _Counts:
+    """Plant faults of every kind, look for flags, and count."""
+    counts = _Counts()
+    for kind in KINDS:
+        for seen, plant, name in _planted(kind, sources):
+            counts.planted[kind] += 1
+            counts.people[kind].add(name)
+            flags = flags_of(plant.seen, USUAL.with_count(kind, on=True))
+            tolerance = seen.frames(TOLERANCE_S)
+            counts.found[kind] += any(flag.kind == kind and _touches(flag, plant, tolerance) for flag in flags)
+            for flag in flags:
+                on = _touches(flag, plant, tolerance) and not (flag.kind in WHOLE and flag.kind != kind)
+                counts.right[flag.kind] += on and flag.kind == kind
+                counts.wrong[flag.kind] += not on
+        report(f"{kind}: {counts.found[kind]} of {counts.planted[kind]} found")
+    return counts
 
 
 def _sources(data: Path | None) -> Iterator[Source]:

@@ -12,7 +12,7 @@ from engine.controls import CONTROL_INDEX, bundled_measurer
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import bundled
 from engine.inpaint.regions import REGIONS
-from engine.inpaint.seams import bridged
+from engine.inpaint.seams import bridge_weights
 from engine.lab.corpus import Piece, pieces_to_measure
 from engine.lab.evaluate.inpaint.motion import CLOSED_MM
 from engine.lab.evaluate.inpaint.table import Method
@@ -84,7 +84,10 @@ def masked(event: Event, steering: str) -> tuple[Gap, slice]:
 def table(data: Path | None, report: Report) -> list[Row]:
     """Return the share of events that happen again, per kind, steering and method."""
     pieces = pieces_to_measure(data)
-    ways: dict[str, Method] = {"gan": lambda gap: bundled().fill(gap)[0], "bridge": lambda gap: bridged(gap.known)}
+    ways: dict[str, Method] = {
+        "gan": lambda gap: bundled().fill(gap)[0],
+        "bridge": lambda gap: bridge_weights(gap.known),
+    }
     rows = []
     for kind in LONGEST_S:
         found = events(pieces, kind)

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicHermiteSpline, make_smoothing_spline
 from scipy.linalg import solveh_banded
 
 from engine.inpaint.gap import Gap
-from engine.inpaint.seams import land
+from engine.inpaint.seams import constrain
 from engine.lab.corpus import Piece
 from engine.take import SHAPES, Array
 
@@ -21,14 +21,14 @@ _AROUND = 8  # known frames on either side by which a recorded segment is chosen
 
 def _each(gap: Gap, make: Callable[[Array, Array, Array], Array]) -> Array:
     """Fill shapes that are unknown at the same frames together: `make(known frames, their values, unknown frames)`."""
-    made, frames = gap.known.copy(), np.arange(len(gap.known), dtype=np.float64)
+    filled, frames = gap.known.copy(), np.arange(len(gap.known), dtype=np.float64)
     free = np.isnan(gap.known)
     for pattern in np.unique(free, axis=1).T:
         columns = np.flatnonzero((free == pattern[:, None]).all(axis=0))
         if pattern.any():
             known = gap.known[np.ix_(~pattern, columns)]
-            made[np.ix_(pattern, columns)] = 0.0 if pattern.all() else make(frames[~pattern], known, frames[pattern])
-    return np.where(free, np.clip(made, 0.0, 1.0), gap.known)
+            filled[np.ix_(pattern, columns)] = 0.0 if pattern.all() else make(frames[~pattern], known, frames[pattern])
+    return np.where(free, np.clip(filled, 0.0, 1.0), gap.known)
 
 
 def linear(gap: Gap) -> Array:
@@ -93,20 +93,20 @@ class Propagation:
         shapes, unknown = free.any(axis=0), np.flatnonzero(free.any(axis=1))
         mean = self._mean[shapes]
         variance, modes = np.linalg.eigh(self._covariance[np.ix_(shapes, shapes)])
-        held = np.nan_to_num((gap.known[:, shapes] - mean) @ modes)
+        coordinates = np.nan_to_num((gap.known[:, shapes] - mean) @ modes)
         steps = np.nan_to_num(np.diff(gap.guide[:, shapes], axis=0)) @ modes
-        pull = np.zeros_like(held)
-        pull[1:] += steps + held[:-1]
-        pull[:-1] += held[1:] - steps
+        pull = np.zeros_like(coordinates)
+        pull[1:] += steps + coordinates[:-1]
+        pull[:-1] += coordinates[1:] - steps
         sides = (unknown > 0).astype(float) + (unknown < len(free) - 1)
         bands = np.zeros((2, len(unknown)))
         bands[1, :-1] = -(np.diff(unknown) == 1).astype(float)
-        made = held.copy()
+        modal = coordinates.copy()
         for mode, spread in enumerate(np.maximum(variance, 1e-5)):
             bands[0] = sides + self._prior / spread
-            made[unknown, mode] = solveh_banded(bands, pull[unknown, mode], lower=True)
+            modal[unknown, mode] = solveh_banded(bands, pull[unknown, mode], lower=True)
         filled = gap.known.copy()
-        filled[:, shapes] = made @ modes.T + mean
+        filled[:, shapes] = modal @ modes.T + mean
         return np.where(free, np.clip(filled, 0.0, 1.0), gap.known)
 
 
@@ -144,10 +144,10 @@ class Nearest:
                 segment = piece[start : start + last - first]
         if segment is None:
             return linear(gap)
-        made = gap.known.copy()
-        made[first:last] = segment
-        made = land(made, gap.known)
-        return np.where(free, np.clip(made, 0.0, 1.0), gap.known)
+        motion = gap.known.copy()
+        motion[first:last] = segment
+        motion = constrain(motion, gap.known)
+        return np.where(free, np.clip(motion, 0.0, 1.0), gap.known)
 
 
 def _costs(piece: Array, wanted: Array) -> Array:

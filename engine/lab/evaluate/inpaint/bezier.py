@@ -29,9 +29,9 @@ def table(data: Path | None, report: Report) -> list[Row]:
             gap = guided(hole, kind, rng)
             bundled().fill(gap)
             began = time.perf_counter()
-            made = bundled().fill(gap)[0][hole.rows]
+            result = bundled().fill(gap)[0][hole.rows]
             spent.append((time.perf_counter() - began) * 1e3)
-            fitted = [fit(curve) for curve in made.T if np.ptp(curve) > TOLERANCE]
+            fitted = [fit(curve) for curve in result.T if np.ptp(curve) > TOLERANCE]
             points += [count for count, _ in fitted]
             errors += [error for _, error in fitted]
         if found:

@@ -88,7 +88,7 @@ def score(answers: Path, key: Path) -> dict[str, float]:
         ]
     except (ValueError, KeyError, TypeError, AttributeError):
         raise FormatError("The answers or the key are not those of a blind sheet.") from None
-    wrong = [f"{name}: {said!r}" for name, said in given if said not in ANSWERS or name not in truth]
+    wrong = [f"{name}: {answer!r}" for name, answer in given if answer not in ANSWERS or name not in truth]
     if wrong or not given:
         raise FormatError(
             f"{answers.name} has no answer that counts: {(wrong or ['empty'])[0]}.",
@@ -96,7 +96,7 @@ def score(answers: Path, key: Path) -> dict[str, float]:
         )
     figures = {"answers": float(len(given))}
     for kind in ANSWERS:
-        said = [answer == "recorded" for name, answer in given if truth[name] == kind]
-        figures[f"{kind}_taken_for_recorded"] = float(np.mean(said)) if said else float("nan")
+        judged = [answer == "recorded" for name, answer in given if truth[name] == kind]
+        figures[f"{kind}_taken_for_recorded"] = float(np.mean(judged)) if judged else float("nan")
     figures["right"] = float(np.mean([answer == truth[name] for name, answer in given]))
     return figures

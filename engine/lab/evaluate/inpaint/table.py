@@ -10,11 +10,11 @@ import numpy as np
 
 from engine.controls import bundled_measurer
 from engine.errors import EngineError
-from engine.inpaint.fill import BRIDGE_S
+from engine.inpaint import fill as filling
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler, bundled, load
 from engine.inpaint.regions import REGIONS
-from engine.inpaint.seams import bridged
+from engine.inpaint.seams import bridge_weights
 from engine.lab.corpus import Piece, data_folder, pieces_to_measure, rest_of, split
 from engine.lab.evaluate.inpaint import baselines as spans
 from engine.lab.evaluate.inpaint import motion
@@ -94,10 +94,10 @@ def holes(pieces: Sequence[Piece], frames: int, most: int = MOST) -> list[Hole]:
 
 def guided(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
     """Return what is known of a hole with one kind of guidance taken from the truth, and the rest of its take."""
-    return replace(_told(hole, kind, rng), rest=hole.rest)
+    return replace(_with_guidance(hole, kind, rng), rest=hole.rest)
 
 
-def _told(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
+def _with_guidance(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
     known = np.where(hole.mask, np.nan, hole.truth)
     if kind == "keyframes":
         step = round(KEYFRAME_S * MODEL_FPS)
@@ -115,12 +115,12 @@ def _told(hole: Hole, kind: str, rng: np.random.Generator) -> Gap:
 
 
 def network(filler: Filler) -> Method:
-    """Return how the product fills: short holes without steering are bridged, all others performed."""
+    """Return how the product fills: short holes without steering are interpolated, all others generated."""
 
     def make(gap: Gap) -> Array:
         steered = np.isfinite(gap.guide).any() or np.isfinite(gap.controls).any() or gap.visemes.any()
-        short = np.isnan(gap.known).any(axis=1).sum() <= BRIDGE_S * MODEL_FPS
-        return bridged(gap.known) if short and not steered else filler.fill(gap)[0]
+        short = np.isnan(gap.known).any(axis=1).sum() <= filling.TUNING.bridge_s * MODEL_FPS
+        return bridge_weights(gap.known) if short and not steered else filler.fill(gap)[0]
 
     return make
 
@@ -167,7 +167,7 @@ def rows(
 
     Rows of guided fills by networks also hold their error on the very same holes without guidance.
     """
-    made: list[Row] = []
+    result: list[Row] = []
     for span in sorted(spans_s):
         for kind in guidance:
             found = holes(pieces, round(span * MODEL_FPS), unguided if kind == "none" else most)
@@ -179,22 +179,22 @@ def rows(
             start = {"span_s": round(span, 3), "guidance": kind, "holes": len(found)}
             for name in names:
                 fills = [ways[name](gap) for gap in gaps]
-                made.append({"method": name} | start | figures_of(found, gaps, fills))
+                result.append({"method": name} | start | figures_of(found, gaps, fills))
             if kind != "none":
-                for row, name in zip(made[-len(names) :], names, strict=True):
+                for row, name in zip(result[-len(names) :], names, strict=True):
                     if name in _NETWORKS:
                         row["unguided_mae"] = _mae(found, [ways[name](guided(hole, "none", rng)) for hole in found])
             if kind == "none":
-                made.append({"method": "recorded"} | start | figures_of(found, gaps, [hole.truth for hole in found]))
+                result.append({"method": "recorded"} | start | figures_of(found, gaps, [hole.truth for hole in found]))
                 if filler is not None:
-                    made[-len(names) - 1]["variety"] = _variety(filler, found, gaps)
+                    result[-len(names) - 1]["variety"] = _variety(filler, found, gaps)
             report(f"{span:.2f} s, {kind}: {len(found)} holes, {', '.join(names)}")
-    return made
+    return result
 
 
 def _mae(found: Sequence[Hole], fills: Sequence[Array]) -> float:
     return float(
-        np.concatenate([np.abs(fill - one.truth)[one.mask] for one, fill in zip(found, fills, strict=True)]).mean()
+        np.concatenate([np.abs(fill - each.truth)[each.mask] for each, fill in zip(found, fills, strict=True)]).mean()
     )
 
 
@@ -215,7 +215,7 @@ def figures_of(found: Sequence[Hole], gaps: Sequence[Gap], fills: Sequence[Array
     moved = np.concatenate([np.abs(np.diff(fill - hole.truth, axis=0))[hole.mask[1:]] for hole, fill in pairs])
     faces = [(hole.truth[hole.rows], fill[hole.rows]) for hole, fill in pairs]
     parts = [(hole.truth[np.ix_(hole.rows, hole.shapes)], fill[np.ix_(hole.rows, hole.shapes)]) for hole, fill in pairs]
-    tpr, fpr = motion.closures([truth for truth, _ in faces], [made for _, made in faces])
+    tpr, fpr = motion.closures([truth for truth, _ in faces], [result for _, result in faces])
     jumps = np.nanmean([motion.seam_jumps(fill, hole.mask) for hole, fill in pairs], axis=0)
     outside = max(float(np.abs(fill - hole.truth)[~hole.mask].max(initial=0.0)) for hole, fill in pairs)
     pins = [
@@ -225,7 +225,7 @@ def figures_of(found: Sequence[Hole], gaps: Sequence[Gap], fills: Sequence[Array
     return {
         "mae": _mae(found, fills),
         "velocity_mae": float(moved.mean()),
-        "npss": motion.npss([truth for truth, _ in parts], [made for _, made in parts]),
+        "npss": motion.npss([truth for truth, _ in parts], [result for _, result in parts]),
         "frechet": motion.frechet(latents_of(_around(pairs, 0)), latents_of(_around(pairs, 1))),
         "closure_tpr": tpr,
         "closure_fpr": fpr,

@@ -22,16 +22,16 @@ def rbf_influence(rest: Array, points: npt.NDArray[np.int64]) -> Array:
     """Return how far each point moves each vertex, (n, m), with kernel r and an affine term (ZLL17 [16])."""
     centres = rest[points]
     system = np.block([[_distances(centres, centres), _affine(centres)], [_affine(centres).T, np.zeros((4, 4))]])
-    wanted = np.eye(len(points) + 4)[:, : len(points)]
-    return np.asarray(np.hstack([_distances(rest, centres), _affine(rest)]) @ np.linalg.solve(system, wanted))
+    target = np.eye(len(points) + 4)[:, : len(points)]
+    return np.asarray(np.hstack([_distances(rest, centres), _affine(rest)]) @ np.linalg.solve(system, target))
 
 
 def _affine(points: Array) -> Array:
     return np.hstack([np.ones((len(points), 1)), points])
 
 
-def _distances(one: Array, other: Array) -> Array:
-    return np.asarray(np.linalg.norm(one[:, None] - other[None], axis=2))
+def _distances(each: Array, other: Array) -> Array:
+    return np.asarray(np.linalg.norm(each[:, None] - other[None], axis=2))
 
 
 def laplacian_influence(rest: Array, triangles: npt.NDArray[np.integer], points: npt.NDArray[np.int64]) -> Array:

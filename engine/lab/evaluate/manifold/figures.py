@@ -60,9 +60,9 @@ def _faces(plots: Any, data: Path | None, path: Path) -> Path:
     """Draw the expression that moves most, from the front, lit from above: face at rest with its points, methods, truth."""
     pair = tables.heads()
     rest, target = max(tables.face_pairs(data), key=lambda faces: float(np.abs(faces[1] - faces[0]).sum()))
-    made = {SHOWN[method]: move(target[pair.points]) for method, move in tables.drivers(rest).items()}
+    result = {SHOWN[method]: move(target[pair.points]) for method, move in tables.drivers(rest).items()}
     triangles = pair.part[(pair.part < tables.FACE_VERTICES).all(axis=1)]
-    shown = {f"at rest, {tables.POINTS} points": rest, **made, "truth": target}
+    shown = {f"at rest, {tables.POINTS} points": rest, **result, "truth": target}
     figure, axes = plots.subplots(1, len(shown), figsize=(15, 4.2), layout="constrained")
     for axis, (title, vertices) in zip(axes, shown.items(), strict=True):
         corner = vertices[triangles]

@@ -134,8 +134,8 @@ def retarget_errors(data: Path | None, labels: int, method: str, *, suggested: b
     rows = []
     for source, target, rest in expressions(data):
         chosen = suggest_frames(source, labels) if suggested else evenly(labels)
-        made = retarget(source, source_rest, rest, {int(frame): target[frame] for frame in chosen})
-        rows.append(np.linalg.norm(made - target, axis=2).mean(axis=1))
+        result = retarget(source, source_rest, rest, {int(frame): target[frame] for frame in chosen})
+        rows.append(np.linalg.norm(result - target, axis=2).mean(axis=1))
     return np.array(rows)
 
 

@@ -45,8 +45,8 @@ def per_frame_bounded(pair: Correspondence, low: float = RANGE[0], high: float =
     for _ in range(ROUNDS):
         here, side = weights[active], right[active]
         slope = here @ gram - side
-        wanted = np.clip(here - slope / np.diag(gram), low, high) - here
-        going = np.abs(wanted).max(axis=1) > SETTLED
+        target = np.clip(here - slope / np.diag(gram), low, high) - here
+        going = np.abs(target).max(axis=1) > SETTLED
         if not going.any():
             break
         active, here, side, slope = active[going], here[going], side[going], slope[going]

@@ -19,7 +19,7 @@ from engine.spacetime.closure import Gaps
 from engine.spacetime.layout import Layout, standard
 from engine.spacetime.matching import Matching
 from engine.spacetime.retarget import Correspondence, correspond, match, with_jaw, without_jaw
-from engine.spacetime.source import Source, from_take, still_of_noise
+from engine.spacetime.source import Source, from_take, without_jitter
 from engine.take import MODEL_FPS, Array, Mask, Take
 
 PRIOR_ALPHA = 0.3  # of the per-frame prior, chosen on training takes as our own settings were
@@ -133,7 +133,7 @@ def _round_trip(
     played = from_take(Take(truth, MODEL_FPS), ours.character, ours.layout)
     captured = CONDITIONS[condition](played, rng)
     captured = replace(
-        captured, displacements=still_of_noise(captured.displacements)
+        captured, displacements=without_jitter(captured.displacements)
     )  # as any capture, for all methods
     there, used = carry(captured, other, method)
     undisturbed = _stretched(played, rng) if condition.startswith("proportion") else played

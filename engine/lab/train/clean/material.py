@@ -35,14 +35,14 @@ def spoil(
     performances: Iterable[tuple[Array, float, str]], fps: float, *, seed: int, faults: Faults | None = None
 ) -> list[Spoilt]:
     """Return performances (weights, their rate, their name) at another rate, spoilt; the same seed spoils alike."""
-    made = []
+    result = []
     for index, (weights, own_fps, source) in enumerate(performances):
         rng = np.random.default_rng([seed, index, round(fps)])
         duration_s = (len(weights) - 1) / own_fps
         times = changing_times(duration_s, rng) if fps == CHANGING else np.arange(0.0, duration_s, 1 / fps)
         truth = np.clip(cubic(weights, times * own_fps), 0.0, 1.0)
-        made.append(Spoilt(truth, times, degrade(truth, times, faults or Faults(), rng), source))
-    return made
+        result.append(Spoilt(truth, times, degrade(truth, times, faults or Faults(), rng), source))
+    return result
 
 
 def cubic(curves: Array, at: Array) -> Array:

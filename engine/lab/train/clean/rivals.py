@@ -26,10 +26,10 @@ Estimate = Callable[[Array], Array]  # (frames, features) -> (frames, orders * 5
 def derivatives(weights: Array, times_s: Array, orders: int) -> list[Array]:
     """Return derivatives of orders 1..K, backward so that no frame needs the next one, each (frames, 52)."""
     steps = np.diff(times_s, prepend=2 * times_s[0] - times_s[1])[:, None]
-    made = [weights]
+    result = [weights]
     for _ in range(orders):
-        made.append(np.diff(made[-1], axis=0, prepend=made[-1][:1]) / steps)
-    return made[1:]
+        result.append(np.diff(result[-1], axis=0, prepend=result[-1][:1]) / steps)
+    return result[1:]
 
 
 def features(weights: Array, times_s: Array, orders: int) -> Array:
@@ -83,10 +83,10 @@ class Rival:
 
 
 def _leaky(slope: Array, estimate: Array, times_s: Array, leak: float) -> Array:
-    made = estimate.copy()
+    result = estimate.copy()
     for index, step in enumerate(np.diff(times_s), start=1):
-        made[index] = leak * (step * slope[index] + made[index - 1]) + (1 - leak) * estimate[index]
-    return made
+        result[index] = leak * (step * slope[index] + result[index - 1]) + (1 - leak) * estimate[index]
+    return result
 
 
 class FullyConnected(nn.Module):
@@ -104,14 +104,14 @@ class FullyConnected(nn.Module):
 
     def forward(self, seen: Tensor) -> Tensor:
         """Estimate derivatives."""
-        made: Tensor = self.layers(seen)
-        return made
+        result: Tensor = self.layers(seen)
+        return result
 
     def estimate(self, seen: Array) -> Array:
         """Estimate derivatives of numpy features."""
         with torch.inference_mode():
-            made: Array = self(torch.tensor(seen, dtype=torch.float32)).numpy().astype(np.float64)
-        return made
+            result: Array = self(torch.tensor(seen, dtype=torch.float32)).numpy().astype(np.float64)
+        return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,12 +137,12 @@ class Trees:
         """Estimate derivatives: (frames, features) -> (frames, outputs)."""
         seen = seen.astype(np.float32)
         rows = np.arange(len(seen))
-        made = np.tile(self.base.astype(np.float64), (len(seen), 1))
+        result = np.tile(self.base.astype(np.float64), (len(seen), 1))
         for output, roots in enumerate(self.roots):
             for root in roots:
                 node = np.full(len(seen), root)
                 while (inner := self.feature[node] >= 0).any():
                     goes_left = seen[rows, np.maximum(self.feature[node], 0)] <= self.threshold[node]
                     node = np.where(inner, np.where(goes_left, self.left[node], self.right[node]), node)
-                made[:, output] += self.value[node]
-        return made
+                result[:, output] += self.value[node]
+        return result

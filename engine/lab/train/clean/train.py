@@ -27,15 +27,15 @@ from engine.take import Array
 MM_PER_CM = 10.0  # distances count in cm, so that they weigh like weights
 
 
-def losses(made: Tensor, batch: Batch, before: Tensor, distances: Distances, settings: Settings) -> dict[str, Tensor]:
+def losses(result: Tensor, batch: Batch, before: Tensor, distances: Distances, settings: Settings) -> dict[str, Tensor]:
     """Return every term by name: weights, their derivative, distances to the truth and to the tracker's.
 
     `made` is (streams, frames, 52) and `before` the difference from the truth on the frame before, (streams, 1, 52).
     """
     share = batch.present + settings.lost_share * (1 - batch.present)
-    error = (made - batch.truth) * share.sqrt()
+    error = (result - batch.truth) * share.sqrt()
     slope = torch.diff(error, dim=1, prepend=before) / batch.step_s
-    truth, tracked, estimate = (distances(weights) for weights in (batch.truth, batch.seen, made))
+    truth, tracked, estimate = (distances(weights) for weights in (batch.truth, batch.seen, result))
     pull = ((tracked - estimate).abs() * batch.present).mean()
     return {
         "mse": error.square().mean(),
@@ -95,14 +95,14 @@ class Trainer:
         state = self.network.start(batch.seen[:, 0])
         before = torch.zeros_like(batch.truth[:, :1])
         for chunk in _chunks(batch, length):
-            made, state = self._forward(chunk, state)
-            terms = losses(made, chunk, before, self._distances, self._settings)
+            result, state = self._forward(chunk, state)
+            terms = losses(result, chunk, before, self._distances, self._settings)
             loss = torch.stack(list(terms.values())).sum()
             self._optimizer.zero_grad()
             loss.backward()  # type: ignore[no-untyped-call]
             torch.nn.utils.clip_grad_norm_(self.network.parameters(), 0.5)
             self._optimizer.step()
-            state, before = state.detached(), (made - chunk.truth)[:, -1:].detach()
+            state, before = state.detached(), (result - chunk.truth)[:, -1:].detach()
             mse += float(terms["mse"].detach()) * length / batch.truth.shape[1]
         return mse
 
@@ -113,13 +113,13 @@ class Trainer:
         """Return the loss terms on validation takes, always spoilt alike, and the mean squared error of the input."""
         batch = self._valid
         with torch.inference_mode():
-            made, _ = run(self.network, batch.seen, batch.present, batch.step_s, self.network.start(batch.seen[:, 0]))
+            result, _ = run(self.network, batch.seen, batch.present, batch.step_s, self.network.start(batch.seen[:, 0]))
             before = torch.zeros_like(batch.truth[:, :1])
-            terms = losses(made, batch, before, self._distances, self._settings)
-            terms["mse"] = (made - batch.truth).square().mean()
+            terms = losses(result, batch, before, self._distances, self._settings)
+            terms["mse"] = (result - batch.truth).square().mean()
             terms["raw_mse"] = (batch.seen - batch.truth).square().mean()
             kept = batch.present
-            for name, curves in (("seen_mse", made), ("raw_seen_mse", batch.seen)):
+            for name, curves in (("seen_mse", result), ("raw_seen_mse", batch.seen)):
                 terms[name] = ((curves - batch.truth).square() * kept).sum() / kept.sum() / curves.shape[2]
         return {name: float(value) for name, value in terms.items()}
 

@@ -46,16 +46,16 @@ def train_rivals(data: Path, out: Path = MODELS, settings: Settings | None = Non
 def load_rivals(folder: Path = MODELS) -> dict[str, Filter]:
     """Return the tuned filters and memoryless methods by name; raises `AssetError` where the file is missing."""
     tensors, chosen = load_model(folder / FILE, kind="clean")
-    made: dict[str, Filter] = {
+    result: dict[str, Filter] = {
         name: Kalman(**chosen[name]) if name == "kalman" else OneEuro(**chosen[name]) for name in ("one_euro", "kalman")
     }
-    made["savgol"] = savgol(**chosen["savgol"])
+    result["savgol"] = savgol(**chosen["savgol"])
     dense = FullyConnected(chosen["fully_connected"]["orders"])
     dense.load_state_dict({name[6:]: value for name, value in tensors.items() if name.startswith("dense.")})
     trees = Trees(**{name[6:]: value.numpy() for name, value in tensors.items() if name.startswith("trees.")})
-    made["fully_connected"] = Rival(dense.estimate, **chosen["fully_connected"])
-    made["boosted_trees"] = Rival(trees.estimate, **chosen["boosted_trees"])
-    return made
+    result["fully_connected"] = Rival(dense.estimate, **chosen["fully_connected"])
+    result["boosted_trees"] = Rival(trees.estimate, **chosen["boosted_trees"])
+    return result
 
 
 def error(cleaner: Filter, spoilt: Iterable[Spoilt]) -> float:
@@ -90,23 +90,23 @@ def _best_leak(estimate: Estimate, orders: int, spoilt: list[Spoilt]) -> tuple[f
     errors = []
     for leak in LEAKS:
         rival = Rival(estimate, orders, leak)
-        made = [
+        result = [
             rival.summed(flat, item.tracked.weights, item.times_s) for flat, item in zip(flats, spoilt, strict=True)
         ]
-        pairs = zip(made, spoilt, strict=True)
-        errors.append(float(np.mean(np.concatenate([np.square(one - item.truth) for one, item in pairs]))))
+        pairs = zip(result, spoilt, strict=True)
+        errors.append(float(np.mean(np.concatenate([np.square(each - item.truth) for each, item in pairs]))))
     return min(errors), LEAKS[int(np.argmin(errors))]
 
 
 def _samples(pieces: list[Array], settings: Settings, orders: int, rng: np.random.Generator) -> tuple[Array, Array]:
     """Return features and targets of a batch of spoilt streams, the very ones the recurrent network learns from."""
     batch = make_batch(pieces, settings, rng)
-    seen, wanted = [], []
+    seen, target = [], []
     for truth, tracked, steps in zip(batch.truth.numpy(), batch.seen.numpy(), batch.step_s.numpy(), strict=True):
         times = np.cumsum(steps[:, 0].astype(np.float64))
         seen.append(features(tracked.astype(np.float64), times, orders))
-        wanted.append(targets(truth.astype(np.float64), times, orders))
-    return np.concatenate(seen), np.concatenate(wanted)
+        target.append(targets(truth.astype(np.float64), times, orders))
+    return np.concatenate(seen), np.concatenate(target)
 
 
 def _best_dense(
@@ -122,9 +122,9 @@ def _best_dense(
         for index in range(batches):
             for group in optimizer.param_groups:
                 group["lr"] = 1e-3 * (1 - index / batches)
-            seen, wanted = (torch.tensor(x, dtype=torch.float32) for x in _samples(pieces, settings, orders, rng))
+            seen, target = (torch.tensor(x, dtype=torch.float32) for x in _samples(pieces, settings, orders, rng))
             for rows in torch.split(torch.randperm(len(seen)), 512):
-                loss = (network(seen[rows]) - wanted[rows]).square().mean()
+                loss = (network(seen[rows]) - target[rows]).square().mean()
                 optimizer.zero_grad()
                 loss.backward()
                 optimizer.step()
@@ -146,17 +146,17 @@ def _best_trees(
     return trees, {"orders": orders, "leak": leak}
 
 
-def _boost(seen: Array, wanted: Array, *, trees: int = 30, leaves: int = 15) -> Trees:
+def _boost(seen: Array, target: Array, *, trees: int = 30, leaves: int = 15) -> Trees:
     try:
         from sklearn.ensemble import HistGradientBoostingRegressor
     except ImportError as problem:
         raise EngineError("Boosted trees need scikit-learn.", "Install it: pip install scikit-learn.") from problem
     nodes: dict[str, list[Array]] = {name: [] for name in _TREE_NODES}
     roots, base, count = [], [], 0
-    for output in range(wanted.shape[1]):
+    for output in range(target.shape[1]):
         model = HistGradientBoostingRegressor(
             max_iter=trees, max_leaf_nodes=leaves, learning_rate=0.15, early_stopping=False, random_state=0
-        ).fit(seen, wanted[:, output])
+        ).fit(seen, target[:, output])
         base.append(float(model._baseline_prediction.ravel()[0]))
         row = []
         for (predictor,) in model._predictors:

@@ -12,7 +12,7 @@ import torch
 from torch.nn.functional import mse_loss
 
 from engine.controls import CONTROL_INDEX, CONTROLS, FEW, bundled_measurer
-from engine.inpaint.expected import MEMBERS, Expected
+from engine.inpaint.expected import TUNING, Expected
 from engine.lab.corpus import Piece, split, whole_faces
 from engine.lab.reporting import Report
 from engine.lab.train import loop
@@ -30,7 +30,7 @@ class Settings:
     """What a training run depends on; chosen on validation takes."""
 
     seed: int = 0
-    members: int = MEMBERS
+    members: int = TUNING.members
     steps: int = 1500  # of each member
     frames: int = 64
     batch: int = 64
@@ -115,7 +115,7 @@ class Trainer:
 def _standing(material: Sequence[Performance]) -> Expected:
     """Return an untrained network of one member that knows mean and spread of the material."""
     network = Expected(members=1)
-    faces = np.concatenate([one.weights for one in material])
+    faces = np.concatenate([each.weights for each in material])
     measured = bundled_measurer().measure(faces)
     for name, value in (
         ("rest", measured.mean(axis=0)),
@@ -171,7 +171,7 @@ def fitted(material: Sequence[Performance], settings: Settings, path: Path, repo
     schedule = Schedule(
         settings.members * settings.steps,
         path,
-        identity(settings, (one.weights for one in material)),
+        identity(settings, (each.weights for each in material)),
         label=lambda done: f"expected {done}/{settings.members * settings.steps}",
         every=100,
     )
@@ -186,8 +186,8 @@ def validation_errors(network: Expected, pieces: Sequence[Piece]) -> dict[str, d
         off = []
         for piece in whole_faces(pieces):
             measured = bundled_measurer().measure(piece.weights)
-            made = network.face(np.where(np.isin(list(CONTROL_INDEX), chosen), measured, np.nan))
-            off.append((made - piece.weights) ** 2)
+            result = network.pose(np.where(np.isin(list(CONTROL_INDEX), chosen), measured, np.nan))
+            off.append((result - piece.weights) ** 2)
         errors[name] = {"mse": round(float(np.concatenate(off).mean()), 5)}
     return errors
 

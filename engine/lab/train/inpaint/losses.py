@@ -1,4 +1,4 @@
-"""What a fill is held to in training: the truth where it is settled, and motion as varied as the truth where it is not."""
+"""Losses of the filling network: errors where the context determines the motion, an energy score where it does not."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ STRETCHES = (1, 16, 64)  # frames
 
 @dataclass(frozen=True)
 class Batch:
-    """Windows of truth and the ground under their fills; all (batch, frames, ...) float32."""
+    """Windows of truth with the base motion of their fills; all (batch, frames, ...) float32."""
 
     truth: Tensor
     base: Tensor
-    rise: Tensor
+    blend: Tensor
     features: Tensor
     hole: Tensor
     certainty: Tensor
@@ -37,13 +37,13 @@ class Shares:
     penalty: float = 1.0
 
 
-def fill_losses(made: Tensor, batch: Batch, distances: torch.nn.Module, shares: Shares) -> dict[str, Tensor]:
+def fill_losses(filled: Tensor, batch: Batch, distances: torch.nn.Module, shares: Shares) -> dict[str, Tensor]:
     """Return per-window terms (batch,): values and distances (BSS20 equations 1 and 2) and velocities."""
     trust = shares.far + (1 - shares.far) * batch.certainty
     inside = batch.hole.amax(dim=2, keepdim=True)
     room = batch.hole.sum(dim=(1, 2)).clamp(min=1)
-    off = (made - batch.truth) * trust
-    apart = (distances(made) - distances(batch.truth)) * inside * trust
+    off = (filled - batch.truth) * trust
+    apart = (distances(filled) - distances(batch.truth)) * inside * trust
     return {
         "values": shares.values * (off.abs() * batch.hole).sum(dim=(1, 2)) / room,
         "squares": shares.squares * (off.square() * batch.hole).sum(dim=(1, 2)) / room,
@@ -52,8 +52,8 @@ def fill_losses(made: Tensor, batch: Batch, distances: torch.nn.Module, shares: 
     }
 
 
-def spectrum_gap(made: Tensor, batch: Batch, scale: Tensor) -> Tensor:
-    """Return how far the amplitudes of made motion in the holes are from the truth's, whatever their phases.
+def spectrum_gap(filled: Tensor, batch: Batch, scale: Tensor) -> Tensor:
+    """Return how far the amplitudes of filled motion in the holes are from the truth's, whatever their phases.
 
     Mean over shapes, windows of two lengths and frequencies above zero, in units of the shapes' spread. A fill that
     moves as much as the truth but at other moments costs nothing here, where an error per frame asks for stillness.
@@ -63,7 +63,7 @@ def spectrum_gap(made: Tensor, batch: Batch, scale: Tensor) -> Tensor:
         taper = torch.hann_window(length)
         share = batch.hole.unfold(1, length, length // 4).mean(dim=3)  # (batch, windows, 52)
         amplitudes = []
-        for motion in (made, batch.truth):
+        for motion in (filled, batch.truth):
             cut = (motion / scale).unfold(1, length, length // 4)  # (batch, windows, 52, length)
             power = torch.fft.rfft((cut - cut.mean(dim=3, keepdim=True)) * taper).abs().square()[..., 1:]
             inside = (power * share[..., None]).sum(dim=1) / share.sum(dim=1)[..., None].clamp(min=1e-6)
@@ -72,21 +72,22 @@ def spectrum_gap(made: Tensor, batch: Batch, scale: Tensor) -> Tensor:
     return torch.stack(gaps).mean()
 
 
-def scatter(one: Tensor, other: Tensor, batch: Batch) -> Tensor:
+def scatter(one_fill: Tensor, other_fill: Tensor, batch: Batch) -> Tensor:
     """Return the energy score of two fills of each window, (batch,), where nothing settles the pose.
 
     ``(|x - y| + |x' - y|) / 2 - |x - x'| / 2`` with truth y (Gneiting & Raftery 2007, equation 22) is least when fills
     scatter as truths would: near it on average and as far from each other as from it. Distances are root mean squares
     over stretches of a frame, half a second and two, so that whole motions count as well as poses.
     """
-    first, second, between = (_apart(a, b, batch) for a, b in ((one, batch.truth), (other, batch.truth), (one, other)))
+    pairs = ((one_fill, batch.truth), (other_fill, batch.truth), (one_fill, other_fill))
+    first, second, between = (_apart(a, b, batch) for a, b in pairs)
     return (first + second - between) / 2
 
 
-def _apart(one: Tensor, other: Tensor, batch: Batch) -> Tensor:
+def _apart(first: Tensor, second: Tensor, batch: Batch) -> Tensor:
     """Return the mean over stretches of the root mean square difference, (batch,), by how unsettled each is."""
     doubt = batch.hole * (1 - batch.certainty)
-    sums = torch.stack([((one - other).square() * doubt).sum(dim=2), doubt.sum(dim=2), batch.hole.sum(dim=2)])
+    sums = torch.stack([((first - second).square() * doubt).sum(dim=2), doubt.sum(dim=2), batch.hole.sum(dim=2)])
     means = []
     for length in STRETCHES:
         squares, unsettled, room = sums.unfold(2, length, (length + 1) // 2).sum(dim=3)

@@ -67,14 +67,14 @@ def performances(
     faces = [piece.weights for piece in whole_faces(pieces)]
     recorded = [piece.weights if piece.whole_face else _completed(piece.weights, faces, rng) for piece in pieces]
     varied = augment([weights for weights in recorded if len(weights) >= SHORTEST], help_.levers, rng)
-    made = [
+    result = [
         Performance(weights, read_lips(weights, fps=MODEL_FPS) if help_.read_lips else np.full(len(weights), -1))
         for weights in varied
     ]
     for piece, weights in zip(pieces, recorded, strict=True):
         if heard and piece.source in heard and len(weights) >= SHORTEST:
-            made += [Performance(weights, said_in(piece, heard[piece.source]))] * help_.heard_copies
-    return made + synthetic(help_.synthetic_minutes, rng)
+            result += [Performance(weights, said_in(piece, heard[piece.source]))] * help_.heard_copies
+    return result + synthetic(help_.synthetic_minutes, rng)
 
 
 def said_in(piece: Piece, cues: Sequence[Cue]) -> np.ndarray:
@@ -93,13 +93,13 @@ def listened(folder: Path) -> dict[str, list[Cue]]:
 
 def synthetic(minutes: float, rng: np.random.Generator) -> list[Performance]:
     """Return nonsense speech of the given length in all, labelled with the phones that were played."""
-    made: list[Performance] = []
-    while sum(len(one.weights) for one in made) < minutes * 60 * MODEL_FPS:
+    result: list[Performance] = []
+    while sum(len(performance.weights) for performance in result) < minutes * 60 * MODEL_FPS:
         script = random_script(rng)
         weights = perform(script).weights
         cues = [Cue(*phone) for phone in phones(script)]
-        made.append(Performance(weights, classes_over(cues, frames=len(weights), fps=MODEL_FPS)))
-    return made
+        result.append(Performance(weights, classes_over(cues, frames=len(weights), fps=MODEL_FPS)))
+    return result
 
 
 def _completed(mouth: Array, faces: Sequence[Array], rng: np.random.Generator) -> Array:
@@ -116,14 +116,18 @@ def window(curves: Array, frames: int, start: int) -> Array:
 
 def draw(material: Sequence[Performance], frames: int, rng: np.random.Generator) -> Performance:
     """Return a random window; every moment of the material is as likely."""
-    lengths = np.array([len(one.weights) for one in material])
-    one = material[int(rng.choice(len(material), p=lengths / lengths.sum()))]
-    room = len(one.weights) - frames
+    lengths = np.array([len(performance.weights) for performance in material])
+    performance = material[int(rng.choice(len(material), p=lengths / lengths.sum()))]
+    room = len(performance.weights) - frames
     if room >= 0:
         start, stop = (begin := int(rng.integers(room + 1))), begin + frames
-        return Performance(one.weights[start:stop], one.visemes[start:stop], (one.weights[:start], one.weights[stop:]))
-    start = int(rng.integers(len(one.weights)))
-    both = np.concatenate([one.weights, one.visemes[:, None]], axis=1)
+        return Performance(
+            performance.weights[start:stop],
+            performance.visemes[start:stop],
+            (performance.weights[:start], performance.weights[stop:]),
+        )
+    start = int(rng.integers(len(performance.weights)))
+    both = np.concatenate([performance.weights, performance.visemes[:, None]], axis=1)
     both = window(both, frames, start)
     return Performance(both[:, :-1], both[:, -1].astype(int))
 
@@ -134,20 +138,20 @@ def random_gap(truth: Performance, help_: Help, rng: np.random.Generator) -> Gap
     hole = random_hole(frames, rng)
     inside = np.asarray(hole.any(axis=1))
     guided = rng.random() > help_.unguided
-    wanted = {name: guided and rng.random() < getattr(help_, name) for name in ("pins", "guide", "visemes", "controls")}
-    if inside.all() and not any(wanted.values()):
-        wanted["controls"] = True
+    shown = {name: guided and rng.random() < getattr(help_, name) for name in ("pins", "guide", "visemes", "controls")}
+    if inside.all() and not any(shown.values()):
+        shown["controls"] = True
     known = np.where(hole, np.nan, truth.weights)
-    if wanted["pins"]:
+    if shown["pins"]:
         pins = random_pins(hole, help_.longest_pin_gap_s, rng)
         known[pins] = truth.weights[pins]
-    guide = np.where(hole, roughened(truth.weights, rng), np.nan) if wanted["guide"] else None
-    said = one_hot(np.where(inside, truth.visemes, -1)) if wanted["visemes"] else None
+    guide = np.where(hole, roughened(truth.weights, rng), np.nan) if shown["guide"] else None
+    present = one_hot(np.where(inside, truth.visemes, -1)) if shown["visemes"] else None
     return gap_of(
         known,
         guide=guide,
-        visemes=said,
-        controls=_some_controls(truth, inside, help_, rng) if wanted["controls"] else None,
+        visemes=present,
+        controls=_some_controls(truth, inside, help_, rng) if shown["controls"] else None,
         rest=truth.rest,
     )
 

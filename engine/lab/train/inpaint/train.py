@@ -11,10 +11,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from engine.inpaint.gap import Statistics, ground, statistics_of
+from engine.inpaint import retrieval
+from engine.inpaint.base import base_of
 from engine.inpaint.infer import Filler, save_filler
-from engine.inpaint.lend import LENDERS
-from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, noise_curves, see
+from engine.inpaint.network import Discriminator, Generator, GeneratorConfig, discriminator_inputs, noise_curves
+from engine.inpaint.statistics import Statistics, statistics_of
 from engine.lab.corpus import Piece, recorded_seconds, split
 from engine.lab.reporting import Report
 from engine.lab.train import loop
@@ -57,18 +58,18 @@ def make_batches(
     size: int,
     ranks: Sequence[int | None] = (None,),
 ) -> list[Batch]:
-    """Draw windows, tear holes and prepare what the generator sees, once per rank of what the take lends; None lends nothing."""
+    """Draw windows, tear holes and prepare the generator's input, once per rank of retrieval; None retrieves nothing."""
     truths = [draw(material, settings.frames, rng) for _ in range(size)]
     gaps = [random_gap(truth, settings.help, rng) for truth in truths]
-    made = []
+    batches = []
     for rank in ranks:
         rows = []
         for truth, gap in zip(truths, gaps, strict=True):
-            under = ground(gap if rank is not None else replace(gap, rest=()), statistics, rank or 0)
+            base = base_of(gap if rank is not None else replace(gap, rest=()), statistics, rank or 0)
             hole = np.isnan(gap.known)
-            rows.append((truth.weights, under.base, under.rise, under.features, hole, under.certainty[:, None]))
-        made.append(Batch(*(torch.tensor(np.stack(part), dtype=torch.float32) for part in zip(*rows, strict=True))))
-    return made
+            rows.append((truth.weights, base.base, base.blend, base.features, hole, base.certainty[:, None]))
+        batches.append(Batch(*(torch.tensor(np.stack(part), dtype=torch.float32) for part in zip(*rows, strict=True))))
+    return batches
 
 
 class Trainer:
@@ -77,7 +78,7 @@ class Trainer:
     def __init__(self, material: Sequence[Performance], settings: Settings, *, adversary: bool) -> None:
         torch.manual_seed(settings.seed)
         self._material, self.settings, self._adversary = material, settings, adversary
-        self.statistics = statistics_of(np.concatenate([one.weights for one in material]))
+        self.statistics = statistics_of(np.concatenate([performance.weights for performance in material]))
         self._distances = six_distances()
         self.generator = Generator(GeneratorConfig(hidden=settings.hidden))
         self.generator.scale.copy_(torch.tensor(self.statistics.scale))
@@ -93,12 +94,14 @@ class Trainer:
         self._judge = torch.optim.Adam(self.discriminator.parameters(), lr=settings.rate, betas=(0.5, 0.9))
 
     def _face_scale(self) -> Tensor:
-        sample = torch.tensor(np.concatenate([one.weights for one in self._material[::5]]), dtype=torch.float32)
-        return see(sample[None], self._distances)[0].std(dim=0).clamp(min=0.005)
+        sample = torch.tensor(
+            np.concatenate([performance.weights for performance in self._material[::5]]), dtype=torch.float32
+        )
+        return discriminator_inputs(sample[None], self._distances)[0].std(dim=0).clamp(min=0.005)
 
     def _seen(self, weights: Tensor) -> Tensor:
         """Return what the discriminator is fed, in units of its own spread."""
-        return see(weights, self._distances) / self.discriminator.scale
+        return discriminator_inputs(weights, self._distances) / self.discriminator.scale
 
     def advance(self, unit: int) -> dict[str, float]:
         """Take one step, which depends on the settings and its number alone; returns every loss term by name."""
@@ -109,14 +112,14 @@ class Trainer:
         against = part and self._adversary
         self._pace(unit, part=part)
         size = settings.batch // 2 if against else settings.batch
-        ranks = rng.choice(LENDERS, 2, replace=False).tolist() if against else (None,)
+        ranks = rng.choice(retrieval.TUNING.candidates, 2, replace=False).tolist() if against else (None,)
         batches = make_batches(self._material, self.statistics, settings, rng, size=size, ranks=ranks)
-        made = self._generate(batches, rng)
+        fills = self._generate(batches, rng)
         if against:
-            terms = self._against(batches[0], *made)
+            terms = self._against(batches[0], *fills)
         else:
             shares = replace(settings.shares, far=1.0)  # truth counts everywhere: nothing else would
-            terms = _means(fill_losses(made[0], batches[0], self._distances, shares))
+            terms = _means(fill_losses(fills[0], batches[0], self._distances, shares))
         self._make.zero_grad()
         torch.stack([term for name, term in terms.items() if not name.startswith("judge")]).sum().backward()  # type: ignore[no-untyped-call]
         torch.nn.utils.clip_grad_norm_(self.generator.parameters(), 1.0)
@@ -132,30 +135,30 @@ class Trainer:
             group["lr"] = rate * pace
 
     def _generate(self, batches: Sequence[Batch], rng: np.random.Generator) -> Tensor:
-        """Fill each window once on each ground, with different noise, (grounds, batch, frames, 52)."""
+        """Fill each window once on each base motion, with different noise, (bases, batch, frames, 52)."""
         size, frames = batches[0].truth.shape[:2]
         noise = torch.from_numpy(np.stack([noise_curves(frames, rng) for _ in range(len(batches) * size)]))
         motion = self.generator(torch.cat([batch.features for batch in batches]), noise)
-        rises, bases = (torch.stack([getattr(batch, name) for batch in batches]) for name in ("rise", "base"))
-        made: Tensor = bases + rises * motion.unflatten(0, (len(batches), size))
-        return made
+        blends, bases = (torch.stack([getattr(batch, name) for batch in batches]) for name in ("blend", "base"))
+        fills: Tensor = bases + blends * motion.unflatten(0, (len(batches), size))
+        return fills
 
-    def _against(self, batch: Batch, one: Tensor, other: Tensor) -> dict[str, Tensor]:
+    def _against(self, batch: Batch, first: Tensor, second: Tensor) -> dict[str, Tensor]:
         """Let the discriminator learn, then return the generator's terms with its score (equations 2 and 3).
 
         Each window is filled twice, with different noise over different stretches of its take, so that how fills differ
-        can be held to how truths would. Without an adversary nothing is lent: errors would teach to undo it.
+        can be compared with how truths would. Without an adversary nothing is retrieved: errors would teach to undo it.
         """
-        shares, fakes = self.settings.shares, [self._seen(one), self._seen(other)]
-        pair = [fill_losses(made, batch, self._distances, shares) for made in (one, other)]
+        shares, fakes = self.settings.shares, [self._seen(first), self._seen(second)]
+        pair = [fill_losses(filled, batch, self._distances, shares) for filled in (first, second)]
         terms = {name: (term + pair[1][name]).mean() / 2 for name, term in pair[0].items()}
         judged: dict[str, Tensor] = {}
         for _ in range(self.settings.judge_steps):
             judged = self._judge_step(self._seen(batch.truth), [fake.detach() for fake in fakes], batch.hole)
-        apart = torch.stack([spectrum_gap(made, batch, self.generator.scale) for made in (one, other)]).mean()
+        apart = torch.stack([spectrum_gap(filled, batch, self.generator.scale) for filled in (first, second)]).mean()
         terms["adversary"] = -shares.adversary * self.discriminator(torch.cat(fakes)).mean()
         terms["spectrum"] = shares.spectrum * apart
-        terms["scatter"] = shares.scatter * scatter(one, other, batch).mean()
+        terms["scatter"] = shares.scatter * scatter(first, second, batch).mean()
         return terms | judged
 
     def _judge_step(self, real: Tensor, fakes: list[Tensor], hole: Tensor) -> dict[str, Tensor]:
@@ -228,7 +231,7 @@ def _schedule(name: str, trainer: Trainer, material: Sequence[Performance], out:
     return Schedule(
         last,
         out / f"{name}.partial.safetensors",
-        identity(settings, (one.weights for one in material)),
+        identity(settings, (performance.weights for performance in material)),
         label=lambda done: f"{name} {done}/{last}",
         every=EVERY,
         shared=out / SHARED,

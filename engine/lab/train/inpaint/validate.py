@@ -9,7 +9,7 @@ import numpy as np
 from engine.inpaint.gap import Gap, gap_of
 from engine.inpaint.infer import Filler
 from engine.inpaint.regions import REGIONS
-from engine.inpaint.seams import bridged
+from engine.inpaint.seams import bridge_weights
 from engine.lab.corpus import Piece, rest_of
 from engine.lab.evaluate.inpaint.motion import npss
 from engine.take import MODEL_FPS, Array, Mask
@@ -43,7 +43,7 @@ def validation_figures(filler: Filler, pieces: Sequence[Piece], others: Sequence
     figures: dict[str, list[float]] = {}
     ways: dict[str, Callable[[Gap], Array]] = {
         "network": lambda gap: filler.fill(gap)[0],
-        "bridge": lambda gap: bridged(gap.known),
+        "bridge": lambda gap: bridge_weights(gap.known),
     }
     for span in SPANS_S:
         gaps = validation_gaps(pieces, round(span * MODEL_FPS), others)
@@ -55,11 +55,11 @@ def validation_figures(filler: Filler, pieces: Sequence[Piece], others: Sequence
 
 
 def _figures(pairs: Sequence[tuple[Array, Mask, Array]]) -> dict[str, float]:
-    off = np.concatenate([np.abs(made - truth)[hole] for truth, hole, made in pairs])
-    moved = np.concatenate([np.abs(np.diff(made - truth, axis=0))[hole[1:]] for truth, hole, made in pairs])
-    cut = [(truth[hole.any(axis=1)], made[hole.any(axis=1)]) for truth, hole, made in pairs]
+    off = np.concatenate([np.abs(result - truth)[hole] for truth, hole, result in pairs])
+    moved = np.concatenate([np.abs(np.diff(result - truth, axis=0))[hole[1:]] for truth, hole, result in pairs])
+    cut = [(truth[hole.any(axis=1)], result[hole.any(axis=1)]) for truth, hole, result in pairs]
     return {
         "mae": float(off.mean()),
         "velocity_mae": float(moved.mean()),
-        "npss": npss([truth for truth, _ in cut], [made for _, made in cut]),
+        "npss": npss([truth for truth, _ in cut], [result for _, result in cut]),
     }

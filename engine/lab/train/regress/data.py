@@ -11,8 +11,9 @@ import torch
 from scipy.spatial import cKDTree
 from torch import Tensor
 
+from engine.anatomy import mirrored
 from engine.extended import bundled_face
-from engine.lab.corpus import Piece, whole_faces
+from engine.lab.corpus import Piece, person_of, whole_faces
 from engine.lab.performer.augment import Levers, augment
 from engine.lab.performer.corpus import synthetic_performances
 from engine.models.windows import windows
@@ -21,6 +22,7 @@ from engine.take import SHAPES, Array
 
 NEAREST = 6  # real faces that the target of an impossible request is the mean of
 BANK = 12_000  # faces among which they are looked for
+OUTWEIGH = 4.0  # times the frames of the median person that one person may have in an epoch
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Windows:
 
     Attributes
     ----------
-    controls : (windows, 14, frames) float32, the eight controls in mm and the extended ones
+    controls : (windows, 16, frames) float32, the eight controls in mm and the extended ones
     weights : (windows, 52, frames) float32
     """
 
@@ -48,15 +50,17 @@ def cut(pieces: Sequence[Array], *, length: int, overlap: float) -> Windows:
 
 @dataclass(frozen=True)
 class Source:
-    """Endless training windows for one area: every epoch sees the same people played anew.
+    """Endless training windows for one area: every epoch sees people played anew, each about as long.
 
     Attributes
     ----------
     pieces : (frames, 52) each, recorded
+    people : whose each of them is
     synthetic : (frames, 52) each, performed; none if empty
     """
 
     pieces: tuple[Array, ...]
+    people: tuple[str, ...]
     synthetic: tuple[Array, ...]
     levers: Levers
     seed: int
@@ -65,10 +69,33 @@ class Source:
     def epoch(self, *key: int) -> Windows:
         """Return the windows of an epoch; the same key gives the same windows."""
         rng = np.random.default_rng([self.seed, *key])
-        played = augment(self.pieces, self.levers, rng)
+        played = augment(self._drawn(rng), self.levers, rng)
         played += augment(self.synthetic, replace(self.levers, copies=1), rng)[len(self.synthetic) :]
         offset = [piece[int(rng.integers(max(1, len(piece) - self.window))) % self.window :] for piece in played]
         return cut(offset, length=self.window, overlap=0.0)
+
+    def _drawn(self, rng: np.random.Generator) -> list[Array]:
+        """Return pieces drawn so that nobody has many more frames than the others: a network learns who is most seen."""
+        frames = {person: 0 for person in self.people}
+        for piece, person in zip(self.pieces, self.people, strict=True):
+            frames[person] += len(piece)
+        most = OUTWEIGH * float(np.median(list(frames.values())))
+        chosen, drawn = [], dict.fromkeys(self.people, 0)
+        for index in rng.permutation(len(self.pieces)).tolist():
+            person = self.people[index]
+            if drawn[person] < most:
+                chosen.append(index)
+                drawn[person] += len(self.pieces[index])
+        return [self.pieces[index] for index in sorted(chosen)]
+
+    @cached_property
+    def recorded(self) -> dict[str, Windows]:
+        """The windows of each person as they were recorded, and in a mirror."""
+        found = {}
+        for person in dict.fromkeys(self.people):
+            own = [piece for piece, whose in zip(self.pieces, self.people, strict=True) if whose == person]
+            found[person] = cut([*own, *map(mirrored, own)], length=self.window, overlap=0.0)
+        return found
 
     @cached_property
     def first(self) -> Windows:
@@ -80,7 +107,8 @@ def source(area: Area, pieces: Sequence[Piece], levers: Levers, *, minutes: floa
     """Return the training material of an area: its recorded pieces and synthetic performances of some minutes."""
     chosen = whole_faces(pieces) if area.needs_whole_face else pieces
     performed = synthetic_performances(minutes, seed=seed) if minutes else []
-    return Source(tuple(piece.weights for piece in chosen), tuple(performed), levers, seed, window)
+    people = tuple(person_of(piece.source) for piece in chosen)
+    return Source(tuple(piece.weights for piece in chosen), people, tuple(performed), levers, seed, window)
 
 
 class NearestFaces:

@@ -25,7 +25,7 @@ def material() -> list[Performance]:
 def test_training_brings_the_error_below_that_of_the_mean_face(material: list[Performance], tmp_path: Path) -> None:
     network = fitted(material, SMALL, tmp_path / "part.safetensors", report=lambda line: None)
     truth = material[0].weights
-    off = (network.face(measure(truth)) - truth) ** 2
+    off = (network.pose(measure(truth)) - truth) ** 2
     assert off.mean() < 0.7 * ((truth.mean(axis=0) - truth) ** 2).mean()
 
 
@@ -65,5 +65,5 @@ def test_what_is_trained_is_written_with_its_card_and_no_checkpoint_is_left(
     expected.train(tmp_path, tmp_path, QUICK, report=lambda line: None)
     again = fitted(material, QUICK, tmp_path / "part.safetensors", report=lambda line: None)
     curves = measure(material[0].weights[:40])
-    np.testing.assert_array_equal(load(tmp_path / "expected.safetensors").face(curves), again.face(curves))
+    np.testing.assert_array_equal(load(tmp_path / "expected.safetensors").pose(curves), again.pose(curves))
     assert not (tmp_path / expected.PARTIAL).exists() and (tmp_path / "expected.card.json").exists()

@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 import torch
 
-from engine.inpaint.gap import FEATURES, gap_of, ground, statistics_of
+from engine.inpaint.base import base_of
+from engine.inpaint.features import FEATURES
+from engine.inpaint.gap import gap_of
 from engine.inpaint.infer import load, save_filler
-from engine.inpaint.network import MEMORY_FRAMES, noise_curves
+from engine.inpaint.network import TUNING, noise_curves
+from engine.inpaint.statistics import statistics_of
 from engine.lab.corpus import Piece
 from engine.lab.train.inpaint import train as training
 from engine.lab.train.inpaint.losses import Batch, Shares, fill_losses, scatter
@@ -90,11 +93,11 @@ def test_the_ground_keeps_what_is_known_and_features_are_finite(material: list[P
     statistics = statistics_of(material[0].weights)
     for _ in range(40):
         gap = random_gap(draw(material, 80, rng), Help(), rng)
-        under = ground(gap, statistics)
+        base = base_of(gap, statistics)
         there = np.isfinite(gap.known)
-        np.testing.assert_array_equal(under.base[there], gap.known[there])
-        assert not under.rise[there].any() and (under.rise[~there] > 0).all()
-        assert under.features.shape == (80, FEATURES) and np.isfinite(under.features).all()
+        np.testing.assert_array_equal(base.base[there], gap.known[there])
+        assert not base.blend[there].any() and (base.blend[~there] > 0).all()
+        assert base.features.shape == (80, FEATURES) and np.isfinite(base.features).all()
 
 
 def test_losses_equal_a_plain_sum_over_the_hole(material: list[Performance]) -> None:
@@ -130,7 +133,7 @@ def test_scatter_asks_nothing_where_the_pose_is_settled(material: list[Performan
 def test_noise_has_unit_variance_and_each_curve_its_own_memory() -> None:
     noise = noise_curves(200_000, np.random.default_rng(0))
     np.testing.assert_allclose(noise.std(axis=0), 1.0, atol=0.05)
-    for curve, memory in zip(noise.T, MEMORY_FRAMES, strict=True):
+    for curve, memory in zip(noise.T, TUNING.memory_frames, strict=True):
         lag = max(1, round(memory))
         expected = np.exp(-lag / memory) if memory else 0.0
         assert np.corrcoef(curve[:-lag], curve[lag:])[0, 1] == pytest.approx(expected, abs=0.05)

@@ -20,7 +20,7 @@ def test_a_closure_invented_weighs_like_one_missed() -> None:
 
 
 def test_the_same_epoch_gives_the_same_windows_and_another_gives_others() -> None:
-    source = Source(tuple(synthetic_performances(0.2, seed=1)), (), Levers(copies=2), seed=0, window=64)
+    source = Source(tuple(synthetic_performances(0.2, seed=1)), ("someone",), (), Levers(copies=2), seed=0, window=64)
     one, same, other = source.epoch(1, 4), source.epoch(1, 4), source.epoch(1, 5)
     assert torch.equal(one.weights, same.weights) and torch.equal(one.controls, same.controls)
     assert not torch.equal(one.weights[:2], other.weights[:2])

@@ -1,4 +1,4 @@
-"""The head that a performance is carried to, and how it is read and marked."""
+"""The target of a retarget: a head, how it was read, and its markers."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.session.heads import HeadFile, read_head
 from engine.character import Character, bundled
 from engine.editing import Matching, RetargetRequest, standard_places
 from engine.errors import EditError
@@ -23,7 +24,7 @@ Pose = Mapping[str, float]
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """The head that a performance is carried to.
+    """The head that a performance is retargeted to.
 
     Attributes
     ----------
@@ -33,8 +34,8 @@ class Target:
     by_hand : names of those that were placed by hand
     labels : what the head does at a few frames, weights by shape name
     reading : what was corrected when it was read
-    imported : what its file's shapes were taken for, and in which frame; None for a head of ours
-    markers : what the markers of a capture were taken for; without rows for a take
+    imported : the meaning of its file's shapes, and its frame; None for a head of ours
+    markers : the landmark of each marker of a capture; without rows for a take
     """
 
     head: Character | None = None
@@ -47,7 +48,7 @@ class Target:
     labels: Mapping[int, Pose] = field(default_factory=dict)
 
     def request(self, matching: Matching, frames: tuple[int, int] | None = None) -> RetargetRequest:
-        """Return the wish to have frames of a performance on this head by the movement of its markers."""
+        """Return the request to retarget frames of a performance to this head by the movement of its markers."""
         assert self.head is not None
         corrected = any(row.how in ("by hand", "left out") for row in self.markers.rows)
         landmarks = self.markers.landmarks if corrected else None  # lips and lids are measured by them
@@ -71,39 +72,30 @@ def posed(weights: Array, pose: Pose) -> Array:
 
 
 def opened(path: Path | None, reading: Reading | None = None) -> Target:
-    """Return a head, read as corrected, with its 54 markers placed; with none where it lacks the landmarks for them."""
-    from engine.formats.characters.opening import character_of, is_own
-    from engine.formats.characters.reading import import_head
-
-    reading, imported = reading or Reading(), None
-    if path is None:
-        head = bundled()
-    elif is_own(path):
-        head = replace(character_of(path), name=path.stem)
-    else:
-        imported = import_head(path, reading)
-        head = replace(imported.character, name=path.stem)
-    target = Target(head, path, reading, imported)
+    """Read a head as corrected and place its 54 markers on it; none where it lacks the landmarks for them."""
+    reading = reading or Reading()
+    read = HeadFile(bundled()) if path is None else read_head(path, reading)
+    target = Target(read.head, path, reading, read.imported)
     try:
-        return replace(target, places=standard_places(head))
+        return replace(target, places=standard_places(read.head))
     except EditError:
         return target
 
 
 def with_markers(target: Target, capture: Source, table: MarkerTable) -> Target:
-    """Return the target with a capture's markers placed on it: those by hand stay, the others go where they were taken for."""
+    """Return the target with a capture's markers placed on it: those placed by hand stay, the others go to their landmarks."""
     from engine.formats.characters.marker_places import places_on
 
-    made = replace(target, markers=table)
+    marked = replace(target, markers=table)
     if target.head is None or not table.landmarks:
-        return made
+        return marked
     given = {name: target.places[name] for name in capture.names if name in target.by_hand and name in target.places}
     try:
         found = places_on(target.head, capture.neutral, capture.names, table, given)
     except EditError:
-        return made  # the head lacks landmarks: they are placed by hand
+        return marked  # the head lacks landmarks: they are placed by hand
     others = {name: vertex for name, vertex in target.places.items() if name not in capture.names}  # for a take again
-    return replace(made, places={**others, **found})
+    return replace(marked, places={**others, **found})
 
 
 def with_place(target: Target, name: str, vertex: int | None) -> Target:

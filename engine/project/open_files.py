@@ -12,8 +12,8 @@ _open: Counter[File] = Counter()
 _lock = threading.Lock()
 
 
-def hold(path: Path) -> File | None:
-    """Remember that a file is open; returns what `let_go` takes, None where there is no such file."""
+def register(path: Path) -> File | None:
+    """Register a file as open; returns what `release` takes, None where there is no such file."""
     try:
         found = path.stat()
     except OSError:
@@ -24,8 +24,8 @@ def hold(path: Path) -> File | None:
     return file
 
 
-def let_go(file: File | None) -> None:
-    """Forget a file that was held once."""
+def release(file: File | None) -> None:
+    """Release a file that `register` returned."""
     with _lock:
         if file is not None and _open[file] > 1:
             _open[file] -= 1
