@@ -100,8 +100,8 @@ class Gauges:
 
     def _joined(self, slopes: Array, of_close: Array, joined: Mask) -> Array:
         if joined.any():
-            slopes[np.ix_(joined, np.arange(slopes.shape[1]), self._jaw_at)] += of_close[joined][:, :, None]
-            slopes[np.ix_(joined, np.arange(slopes.shape[1]), self._close_at)] = 0.0
+            slopes[:, :, self._jaw_at] += (of_close * joined[:, None])[:, :, None]
+            slopes[:, :, self._close_at] *= ~joined[:, None, None]
         return slopes
 
     def _means(self, terms: Array) -> Array:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from engine.controls import ALL_INDEX
 from engine.extended import Columns, FaceMeasurer, Gauges
+from engine.regress.boxed import Boxes, nearest, unheld
 from engine.take import Array, Mask
 
 _LIPS = ALL_INDEX["lips_vertical"]  # lids have too few shapes to meet point on point, and would go wide while shut
@@ -15,73 +18,131 @@ _LIPS = ALL_INDEX["lips_vertical"]  # lids have too few shapes to meet point on 
 
 @dataclass(frozen=True)
 class Steps:
-    """Tuned constants of Levenberg and Marquardt's steps.
+    """Tuned constants of the search for a face.
 
     Attributes
     ----------
     rounds : at most
-    first, least : damping, mm^2 [1e-4..1e-1]; close to a contact, where distances have no slope, Gauss-Newton alone would
-        throw the lids past each other
-    less, more : factor of the damping after a step that came nearer, and after one that did not
-    releases : times that weights which a step would push beyond their limit are left out of it and it is taken anew
+    soft_mm2 : what is missing may stay so where every further millimetre squared would cost more than one over this, in
+        squared deviations of recorded faces [1e-6..1e-2]
+    shorter, longer : factor of the share of a step that is taken, after one that did not come nearer and after one that did
+    same : share of the cost, by which a step may be dearer than the last
     contact_mm : asked distances shorter than this are met point on point [0.5..3]
     met_mm : a miss that is none
     """
 
     rounds: int = 14
-    first: float = 1e-2
-    least: float = 1e-6
-    less: float = 0.05
-    more: float = 10.0
-    releases: int = 4
+    soft_mm2: float = 1e-4
+    shorter: float = 0.3
+    longer: float = 2.0
+    same: float = 1e-6
     contact_mm: float = 1.5
-    met_mm: float = 1e-4
+    met_mm: float = 1e-3
 
 
 STEPS = Steps()
 
 
 def project(
-    weights: Array, asked: Array, columns: Columns, *, hold: Mask, covariance: Array, measurer: FaceMeasurer
+    weights: Array,
+    asked: Array,
+    columns: Columns,
+    *,
+    hold: Mask,
+    covariance: Array,
+    measurer: FaceMeasurer,
+    roughly: bool = False,
 ) -> Array:
     """Return weights, (frames, 52), near `weights` whose controls reach `asked`, (frames, columns), where `hold` says so.
 
-    Minimises ``|w - weights|^2`` in the metric of the inverse covariance, subject to C(w) = asked, frame by frame: each
-    step is ``S J^T (J S J^T + d)^-1 (asked - C)``, S the covariance of the weights that may move, and is taken only where
-    it comes nearer. Weights stay in 0..1, or at the recorded value where a take lies outside; one that has met its
-    limit and would go further is left out of the step.
+    Minimises ``|w - weights|^2 + |C(w) - asked|^2 / d``, the first in the metric of the inverse covariance, over weights
+    in 0..1, or down or up to the recorded value where a take lies outside; frame by frame. Gauss and Newton's steps: each
+    solves it with the slopes at the weights so far (`boxed.nearest`), and is cut short until it comes nearer. So the
+    face goes on without a jump as what is asked does, and asking more never gives less.
 
     Parameters
     ----------
     covariance : (52, 52), zero in the rows and columns of weights that shall not move
+    roughly : whether the first step will do, cut off at the bounds
     """
-    current, shapes = np.array(weights), np.flatnonzero(covariance.any(axis=0))
-    covariance = covariance[np.ix_(shapes, shapes)]
+    made, shapes = np.array(weights), np.flatnonzero(covariance.any(axis=0))
+    search = _Search(weights[:, shapes], covariance[np.ix_(shapes, shapes)])
     goal = _Goal(measurer.gauges(columns, shapes), columns, asked, hold)
-    damping = np.full(len(weights), STEPS.first)
     active = np.flatnonzero(hold.any(axis=1))
-    low, high = (
-        bound(weights[np.ix_(active, shapes)], limit) for bound, limit in ((np.minimum, 0.0), (np.maximum, 1.0))
-    )
-    vectors, miss = goal.missing(current[active], active)
+    vectors, miss = goal.missing(made[active], active)
+    far = np.abs(miss).max(axis=1, initial=0.0) > STEPS.met_mm
+    if roughly:
+        slope = goal.slopes(vectors, made[active], active)
+        made[np.ix_(active, shapes)] = search.rough(active, slope, miss)
+        return made
     for _ in range(STEPS.rounds):
-        far = np.abs(miss).max(axis=1, initial=0.0) > STEPS.met_mm
-        if not far.any():
+        active, vectors, miss = active[far], vectors[far], miss[far]
+        if not len(active):
             break
-        if not far.all():
-            active, vectors, miss, low, high = active[far], vectors[far], miss[far], low[far], high[far]
-        here = current[active]
-        slope = goal.slopes(vectors, here, active)
-        at = here[:, shapes]
-        step = _step(slope, miss, damping[active], covariance=covariance, at=(at, low, high))
-        here[:, shapes] = np.clip(at + step, low, high)
+        slope, here = goal.slopes(vectors, made[active], active), made[active]
+        step = search.step(active, slope, miss, at=here[:, shapes])
+        here[:, shapes] += step
         tried, left = goal.missing(here, active)
-        nearer = (left**2).sum(axis=1) < (miss**2).sum(axis=1)
-        current[active[nearer]] = here[nearer]
+        nearer = search.judge(active, here[:, shapes], miss, left)
+        made[active[nearer]] = here[nearer]
+        bent = np.abs(left - miss + (slope @ step[..., None])[..., 0]).max(axis=1)  # what no slope told of
+        far = ~nearer | (bent > STEPS.met_mm)
         vectors = np.where(nearer[:, None, None], tried, vectors)
         miss = np.where(nearer[:, None], left, miss)
-        damping[active] = np.maximum(damping[active] * np.where(nearer, STEPS.less, STEPS.more), STEPS.least)
-    return current
+    return made
+
+
+class _Search:
+    """Where each frame's search for its weights stands.
+
+    Parameters
+    ----------
+    start : (frames, shapes), near which weights are looked for
+    covariance : (shapes, shapes)
+    """
+
+    def __init__(self, start: Array, covariance: Array) -> None:
+        self._boxes = Boxes(start, np.minimum(start, 0.0), np.maximum(start, 1.0))
+        self._covariance, self._precision = covariance, _inverse(covariance.tobytes())
+        self._sides = np.zeros_like(start)
+        self._share = np.ones(len(start))
+        self._cost = np.zeros(len(start))
+
+    def step(self, rows: Columns, slope: Array, miss: Array, *, at: Array) -> Array:
+        """Return the step, (rows, shapes), from weights `at`, by their slopes and misses, as long as it is trusted."""
+        sides = self._sides[rows]
+        goals = miss + (slope @ at[..., None])[..., 0]
+        found = nearest(
+            self._boxes.rows(rows), slope, goals, covariance=self._covariance, softness=STEPS.soft_mm2, sides=sides
+        )
+        self._sides[rows] = sides
+        return np.asarray(self._share[rows, None] * (found - at))
+
+    def rough(self, rows: Columns, slope: Array, miss: Array) -> Array:
+        """Return weights, (rows, shapes), that the slopes at the start send there, whatever bounds stop."""
+        boxes = self._boxes.rows(rows)
+        goals = miss + (slope @ boxes.start[..., None])[..., 0]
+        return unheld(boxes, slope, goals, covariance=self._covariance, softness=STEPS.soft_mm2)
+
+    def judge(self, rows: Columns, tried: Array, miss: Array, left: Array) -> Mask:
+        """Return which frames came nearer with the weights they tried; the others' next steps are shorter."""
+        away = tried - self._boxes.start[rows]
+        moved = ((away @ self._precision) * away).sum(axis=1)
+        cost = moved + (left**2).sum(axis=1) / STEPS.soft_mm2
+        before = np.where(self._cost[rows] > 0, self._cost[rows], (miss**2).sum(axis=1) / STEPS.soft_mm2)
+        nearer = np.asarray(cost <= before * (1 + STEPS.same))
+        self._cost[rows] = np.where(nearer, cost, before)
+        self._share[rows] = np.where(
+            nearer, np.minimum(1.0, self._share[rows] * STEPS.longer), self._share[rows] * STEPS.shorter
+        )
+        return nearer
+
+
+@lru_cache(maxsize=16)
+def _inverse(covariance: bytes) -> Array:
+    """Return the inverse of a covariance, which stays the same from drag to drag."""
+    values = np.frombuffer(covariance)
+    return np.asarray(np.linalg.inv(values.reshape(math.isqrt(len(values)), -1)), np.float64)
 
 
 class _Goal:
@@ -121,34 +182,3 @@ class _Goal:
             along = self._gauges.coordinate_slopes(column, joined) * self._short[rows, column, None, None]
             slope = np.concatenate([slope, along], axis=1)
         return slope
-
-
-def _step(slope: Array, miss: Array, damping: Array, *, covariance: Array, at: tuple[Array, Array, Array]) -> Array:
-    """Return the damped step, (frames, shapes), that leaves weights at a limit where they would go beyond it.
-
-    `at` are weights and the least and the most that they may be, (frames, shapes) each.
-    """
-    weights, low, high = at
-    at_low, at_high = weights <= low, weights >= high
-    step = _damped(slope, miss, covariance, damping)
-    free: Mask = np.ones(weights.shape, bool)
-    rows = np.arange(len(weights))
-    for _ in range(STEPS.releases):
-        stuck: Mask = free[rows] & ((at_low[rows] & (step[rows] < 0)) | (at_high[rows] & (step[rows] > 0)))
-        rows = rows[stuck.any(axis=1)]
-        if not len(rows):
-            break
-        free[rows] &= ~stuck[stuck.any(axis=1)]
-        step[rows] = free[rows] * _damped(slope[rows] * free[rows, None, :], miss[rows], covariance, damping[rows])
-    return step
-
-
-def _damped(slope: Array, miss: Array, covariance: Array, damping: Array) -> Array:
-    _, values, shapes = slope.shape
-    spread = (slope.reshape(-1, shapes) @ covariance).reshape(slope.shape)  # (frames, values, shapes)
-    if values == 1:
-        gram = (spread[:, 0] * slope[:, 0]).sum(axis=1) + damping
-        return np.asarray(spread[:, 0] * (miss[:, 0] / gram)[:, None])
-    gram = spread @ slope.transpose(0, 2, 1) + damping[:, None, None] * np.eye(values)
-    pull = np.linalg.solve(gram, miss[..., None])  # (frames, values, 1)
-    return np.asarray((pull.transpose(0, 2, 1) @ spread)[:, 0])

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import distance_transform_edt, gaussian_filter1d, maximum_filter1d
 
@@ -27,7 +26,7 @@ from engine.extended import FaceMeasurer, bundled_face
 from engine.models.resample import interpolate
 from engine.regress.infer import Regressor
 from engine.regress.plausibility import DEFAULT_BELIEVABILITY, Plausible
-from engine.regress.prior import ONE_WAY_SHAPES, FacePrior, bundled_prior
+from engine.regress.prior import ONE_WAY_SHAPES, Columns, FacePrior, bundled_prior
 from engine.regress.projection import project
 from engine.regress.proposal import Proposer
 from engine.take import MODEL_FPS, SHAPES, Array, Mask, Take, runs
@@ -192,7 +191,7 @@ class Solver:
             weights
         )  # and not between measured frames: these would ask for a change themselves
         target = np.maximum(own + pulled, np.where(_SIGNED, -np.inf, 0.0))
-        guess = self._projected(weights, target, hold)
+        guess = self._projected(weights, target, hold, roughly=True)
         curves = self._measurer.measure(guess)
         curves = curves + hold * (target - curves)
         areas = tuple(area for area in FREE if hold[:, _columns(area, but=_SIDEWAYS)].any())
@@ -200,7 +199,7 @@ class Solver:
         change = self._proposer.change(own, curves, areas, origin=origin)
         return np.asarray(gaussian_filter1d(change, self.tuning.smooth_s * MODEL_FPS, axis=0, mode="nearest"))
 
-    def _projected(self, weights: Array, target: Array, hold: Array) -> Array:
+    def _projected(self, weights: Array, target: Array, hold: Array, *, roughly: bool = False) -> Array:
         """Return weights, (frames, 52), brought onto the target, (frames, 16), as firmly as it is held."""
         landed = weights
         for area in FREE:
@@ -208,12 +207,14 @@ class Solver:
             columns = columns[hold[:, columns].any(axis=0)]
             if len(columns):
                 covariance = self._covariances["aside" if columns.tolist() == [_SIDEWAYS] else area]
-                landed = self._area(landed, target[:, columns], columns, hold[:, columns], covariance)
+                goal = target[:, columns], hold[:, columns]
+                landed = self._area(landed, columns, goal, covariance, roughly)
         return landed
 
     def _area(
-        self, weights: Array, target: Array, columns: npt.NDArray[np.int64], hold: Array, covariance: Array
+        self, weights: Array, columns: Columns, goal: tuple[Array, Array], covariance: Array, roughly: bool
     ) -> Array:
+        target, hold = goal
         whole, landed = hold >= 1.0, weights
         # What is held in part is brought by that part from where it would go by itself; from the same face as what is held
         # fully, so that one turns into the other. Where nothing is held fully, that face is the one there is.
@@ -227,12 +228,18 @@ class Solver:
                 wanted = np.where(whole[rows], target[rows], own + hold[rows] * (target[rows] - own))
                 landed = np.array(landed)
                 landed[rows] = project(
-                    weights[rows], wanted, columns, hold=now[rows], covariance=covariance, measurer=self._measurer
+                    weights[rows],
+                    wanted,
+                    columns,
+                    hold=now[rows],
+                    covariance=covariance,
+                    measurer=self._measurer,
+                    roughly=roughly,
                 )
         return landed
 
 
-def _columns(area: str, *, but: int = -1) -> npt.NDArray[np.int64]:
+def _columns(area: str, *, but: int = -1) -> Columns:
     return np.array([index for index, control in enumerate(ALL_CONTROLS) if control.area == area and index != but])
 
 

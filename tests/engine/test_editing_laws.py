@@ -20,6 +20,7 @@ from engine.take import SHAPES, Array, Take
 DEMO = read_take(demo.BUNDLED)
 # What a small pull is for each control, in its unit.
 SMALL = {control.name: 5.0 if control.unit == "degrees" else 1.0 for control in ALL_CONTROLS}
+TINY = 0.003  # of a weight: .05 mm of skin at most; where lips nearly meet, edits so small differ by so much
 MOUTH = np.array([name.startswith(("jaw", "mouth", "cheek", "nose", "tongue")) for name in SHAPES])
 
 controls = st.sampled_from([control.name for control in ALL_CONTROLS])
@@ -100,11 +101,11 @@ def test_a_mirrored_take_is_edited_mirrored(control: str, by: float, start: int)
     np.testing.assert_allclose(mirrored.weights[:, MIRROR], patch.weights, rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize(("fps", "share"), [(24.0, 0.06), (30.0, 0.06), (60.0, 0.03)])
+@pytest.mark.parametrize("fps", [24.0, 30.0, 60.0])
 @law
 @given(control=controls, by=pulls, start=st.integers(6, 24))
-def test_an_edit_is_the_same_at_any_rate(fps: float, share: float, control: str, by: float, start: int) -> None:
-    """As at 120 fps, within a share of the edit (or .003 of a weight, of small ones, which is .05 mm of skin at most)."""
+def test_an_edit_is_the_same_at_any_rate(fps: float, control: str, by: float, start: int) -> None:
+    """As at 120 fps, within .03 of the edit's largest change of a weight, or `TINY` of small edits."""
     smooth, frames = SLOW, (start * 20, start * 20 + 100)
     fine = set_control(smooth, ControlRequest(control, frames, "add", by * SMALL[control])).apply(smooth)
     step = round(120 / fps)
@@ -113,7 +114,7 @@ def test_an_edit_is_the_same_at_any_rate(fps: float, share: float, control: str,
         coarse, ControlRequest(control, (frames[0] // step, frames[1] // step), "add", by * SMALL[control])
     )
     moved = np.abs(fine.weights - smooth.weights).max()
-    assert np.abs(seen.apply(coarse).weights - fine.weights[::step]).max() <= max(share * moved, 0.003)
+    assert np.abs(seen.apply(coarse).weights - fine.weights[::step]).max() <= max(0.03 * moved, TINY)
 
 
 @law
@@ -141,14 +142,15 @@ def test_edits_apart_commute(control: str, second: str, by: float, then: float) 
 @law
 @given(control=controls, sign=st.sampled_from([-1.0, 1.0]), start=places)
 def test_asking_more_never_gives_less(control: str, sign: float, start: int) -> None:
-    """Up to where shapes are at their limits: no weights come nearer there, and which come as near may change."""
+    """But for lips that meet: their points pass each other by less than a tenth of a millimetre."""
     dragger = Dragger(DEMO)
     reached = []
-    for by in (0.25, 0.5, 1.0, 1.5, 2.0, 3.0):
+    for by in (0.25, 0.5, 1.0, 2.0, 3.0, 6.0):
         wish = ask(dragger.controls, control, (start, start + 24), "add", sign * by * SMALL[control], fps=DEMO.fps)
         patch = dragger.drag(*wish)
         reached.append(patch.reached[start - patch.start :][:24, ALL_INDEX[control]])
-    assert (sign * np.diff(reached, axis=0)).min() >= -0.05
+    meeting = control == "lips_vertical" and sign < 0
+    assert (sign * np.diff(reached, axis=0)).min() >= (-0.1 if meeting else -0.01)
 
 
 @law

@@ -12,7 +12,18 @@ from engine.anatomy import impossible
 from engine.controls import bundled_measurer
 from engine.lab.corpus import Piece, data_folder, split, whole_faces
 from engine.lab.evaluate.plausibility import Recorded, recorded
-from engine.lab.evaluate.regress import Method, Report, editor, known_of, methods, pieces_to_measure
+from engine.lab.evaluate.regress import (
+    EYES_MM,
+    LIDS,
+    LIPS,
+    MOUTH_MM,
+    Method,
+    Report,
+    editor,
+    known_of,
+    methods,
+    pieces_to_measure,
+)
 from engine.regress.areas import AREAS
 from engine.take import SHAPES, Array
 
@@ -59,6 +70,9 @@ def table(data: Path | None, report: Report) -> list[Row]:
     `unlike_mouth_mm` and `unlike_eyes_mm` are mean distances to the nearest stretch of the training takes (which must be
     at hand), `times_recorded` their mean ratio to those of the recorded row; `impossible` is the share of frames with a
     pair of shapes that exclude each other; `missed_mm` the root mean square by which controls miss what was asked.
+    `closures_kept_*` is the share of closures which are in the take and in the request, and in what came of it too;
+    `closures_invented_*` how many came that are in neither, to each of these; means over the thresholds of `regress` below
+    which any is.
     Weights are held to 0..1, as the editor holds them.
     """
     pieces = pieces_to_measure(data)
@@ -108,10 +122,14 @@ class Judge:
             for (asked, made), piece in zip(results, self._pieces, strict=True)
         ]
         ratios = [figures[key] / self.base[key] for key in ("unlike_mouth_mm", "unlike_eyes_mm") if self.base.get(key)]
-        return figures | {
-            "missed_mm": float(np.sqrt((np.concatenate(missed) ** 2).mean())),
-            "times_recorded": float(np.mean(ratios)),
-        }
+        return (
+            figures
+            | _closures(results, self._pieces)
+            | {
+                "missed_mm": float(np.sqrt((np.concatenate(missed) ** 2).mean())),
+                "times_recorded": float(np.mean(ratios)),
+            }
+        )
 
 
 def _figures(made: Sequence[Array], pieces: Sequence[Piece], banks: dict[str, Recorded]) -> Row:
@@ -123,3 +141,28 @@ def _figures(made: Sequence[Array], pieces: Sequence[Piece], banks: dict[str, Re
             figures[f"unlike_{part}_mm"] = float(distances.mean())
     figures["impossible"] = float(np.concatenate([impossible(one) for one in made]).mean())
     return figures
+
+
+def _closures(results: Sequence[tuple[Array, Array]], pieces: Sequence[Piece]) -> Row:
+    """Return what became of closures, of (asked, made) of each piece."""
+    figures: Row = {}
+    for part, columns, thresholds in (("mouth", LIPS, MOUTH_MM), ("eyes", LIDS, EYES_MM)):
+        counted = []
+        for (asked, made), piece in zip(results, pieces, strict=True):
+            if piece.whole_face or part == "mouth":
+                faces = (asked, *(bundled_measurer().measure(one) for one in (piece.weights, made)))
+                counted.append([_counted(*(face[:, columns] for face in faces), below=mm) for mm in thresholds])
+        if counted:
+            counts = np.sum(counted, axis=0).astype(float)
+            both, kept, invented = counts[counts[:, 0] > 0].T  # a threshold below which nothing closes tells nothing
+            if len(both):
+                figures[f"closures_kept_{part}"] = float((kept / both).mean())
+                figures[f"closures_invented_{part}"] = float((invented / both).mean())
+    return figures
+
+
+def _counted(asked: Array, recorded: Array, made: Array, *, below: float) -> tuple[int, int, int]:
+    """Return how many distances are closed in take and request, of these in what came of it, and in that alone."""
+    both = (asked < below) & (recorded < below)
+    neither = (asked >= below) & (recorded >= below)
+    return int(both.sum()), int((both & (made < below)).sum()), int((neither & (made < below)).sum())

@@ -80,7 +80,9 @@ def table(data: Path | None, report: Report) -> list[Row]:
     `beside_*` is what moved that the edit does not speak of: mean change of a weight, mean and largest move of a vertex.
     `step_mm` is the largest move of the surface from frame to frame where the edit comes and goes, `step_before_mm`
     there before, `step_take_mm` anywhere within some seconds of it. `notch_mm` is the furthest that the surface leaves the
-    middle of the frames beside at the asked frames, `notch_take_mm` what the take does so in one frame of a hundred.
+    middle of the frames beside at the asked frames, `notch_added_mm` what the edit alone does so (the take moves there too),
+    `notch_take_mm` what the take does so in one frame of a hundred. `possible` is the share of what is asked that any
+    weights in 0..1 reach, `reached_of_possible` what was reached of that.
     `impossible` is the share of frames that hold a pair of shapes
     that exclude each other, less that before; `unlike_mm` how far the motion is from the nearest stretch of the training
     takes, `unlike_before_mm` how far it was (null where these are not at hand). `ms` is the mean time of a drag.
@@ -93,9 +95,12 @@ def measured(pieces: Sequence[Piece], report: Report) -> list[Row]:
     warm_up()
     edits, banks = scripted(pieces), _banks(report)
     rows, totals = [], []
+    possible = [min(1.0, _reached(make(edit, MODES["exact"]))["reached"]) for edit in edits]
     for name, mode in MODES.items():
         made = [make(edit, mode) for edit in edits]
-        figures = [_figures(one, banks) for one in made]
+        figures = [_figures(one, banks) | {"possible": most} for one, most in zip(made, possible, strict=True)]
+        for row in figures:
+            row["reached_of_possible"] = row["reached"] / max(row["possible"], 1e-3)
         totals.append({"edits": "all", "method": name} | _mean(figures))
         for kind in KINDS:
             of_kind = [row for row, edit in zip(figures, edits, strict=True) if edit.kind is kind]
@@ -169,6 +174,7 @@ def _steps(made: Made) -> Row:
         "step_before_mm": float(before[at_ends].max()),
         "step_take_mm": float(before.max()),
         "notch_mm": float(_notch_mm(made.weights[near])[first - 1 : last - 1].max()),
+        "notch_added_mm": float(_notch_mm((made.weights - made.edit.piece.weights)[near])[first - 1 : last - 1].max()),
         "notch_take_mm": float(np.quantile(_notch_mm(made.edit.piece.weights), 0.99)),
     }
 
