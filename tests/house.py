@@ -65,22 +65,26 @@ def rooms(root: Path = ROOT) -> Graph:
 
 
 def reduced(graph: Graph) -> Graph:
-    """Return a graph without the arrows that follow from others."""
+    """Return a graph without the arrows that follow from others; of rooms that import each other every arrow stays."""
+    reach = {room: reached(graph, room) for room in graph}
 
-    def reached(start: str, seen: frozenset[str]) -> frozenset[str]:
-        for other in graph[start] - seen:
-            seen = reached(other, seen | {other})
-        return seen
+    def follows(room: str, other: str) -> bool:
+        """Return whether an arrow follows from two others, neither of which runs within a circle."""
+        between = graph[room] - {other}
+        return any(other in reach[each] and each not in reach[other] and room not in reach[each] for each in between)
 
-    far = {room: {other: reached(other, frozenset()) for other in others} for room, others in graph.items()}
-    return {
-        room: {
-            other
-            for other in others
-            if not any(other in far[room][between] and room not in far[room][between] for between in others - {other})
-        }
-        for room, others in graph.items()
-    }
+    return {room: {other for other in others if not follows(room, other)} for room, others in graph.items()}
+
+
+def reached(graph: Graph, start: str) -> frozenset[str]:
+    """Return all rooms that one leads to."""
+    seen: frozenset[str] = frozenset()
+    ahead = set(graph[start])
+    while ahead:
+        room = ahead.pop()
+        seen |= {room}
+        ahead |= graph[room] - seen
+    return seen
 
 
 def picture(graph: Graph) -> str:
