@@ -132,7 +132,7 @@ def test_what_an_edit_before_asked_for_is_not_undone(demo_take: Take) -> None:
     patch = second.drag(start, apart)
     reached = patch.reached[60 - patch.start : 80 - patch.start]
     np.testing.assert_allclose(reached[:, width], asked[60:80, width], atol=1e-3)
-    np.testing.assert_allclose(reached[:, LIPS], apart[60 - start : 80 - start, LIPS], atol=1e-3)
+    np.testing.assert_allclose(reached[:, LIPS], apart[60 - start : 80 - start, LIPS], atol=2e-3)
 
 
 def test_two_curves_asked_over_other_frames_leave_no_notch(demo_take: Take) -> None:

@@ -60,7 +60,7 @@ def test_every_command_that_writes_a_take_has_the_writing_options(name: str) -> 
 
 
 def test_no_command_that_takes_a_take_is_forgotten() -> None:
-    others = {"evaluate", "bench", "train", "build", "live", "blind", "character"}
+    others = {"evaluate", "bench", "train", "build", "live", "speech", "blind", "character"}
     assert set(get_command(cli.build()).commands) == others | set(READING)  # type: ignore[attr-defined]
 
 

@@ -80,7 +80,7 @@ def test_seconds_may_have_their_unit() -> None:
 def test_places_are_times_and_cues(editing: VisemeEditing) -> None:
     assert editing.time_at(x_of(2.5)) == pytest.approx(2.5)
     assert [editing.cue_at(x_of(at)) for at in (0.5, 1.5, 2.5, 3.5, 4.5)] == [None, 0, 1, None, 2]
-    assert editing.tool_tip(x_of(2.5)).startswith("AA1: ") and editing.tell(x_of(3.5)) == ""
+    assert editing.tool_tip(x_of(2.5)).startswith("AA1: ") and editing.tool_tip(x_of(3.5)) == ""
 
 
 @pytest.mark.parametrize(("off", "near"), [(EDGE_PX - 0.5, True), (EDGE_PX + 0.5, False)])
