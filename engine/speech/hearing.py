@@ -22,6 +22,7 @@ from engine.speech.sound import RATE, dithered, is_silent, speech_samples
 from engine.speech.transcript import Said, Transcript, confidence
 from engine.speech.visemes import Cue
 from engine.take import Array
+from engine.words import counted
 
 FRAME_S = 0.01  # of the decoder
 EARLY_S = 0.0125  # its times come before the sound by half its window
@@ -90,7 +91,7 @@ def _with_text(sound: Array, spoken: Sequence[Spoken], follow: Follow) -> Transc
     phones = sum(len(each.ways[0]) for each in spoken)
     if phones > _WIDEST_RATE * length_s:
         raise EditError(
-            f"The text has {len(spoken):,} words, more than anybody says in {length_s:.1f} seconds.",
+            f"The text has {counted(len(spoken), 'word')}, more than anybody says in {length_s:.1f} seconds.",
             "Give the text of this recording alone.",
         )
     words, added = _keyed(spoken)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from engine.speech.lane import VisemeLane, attached
 from engine.speech.visemes import Cue
 from engine.take import Array
+from engine.words import counted, plural
 
 NAMED = 4  # doubtful words that a sentence names
 
@@ -104,9 +105,9 @@ def doubt(transcript: Transcript) -> str:
         return (
             "The words that were heard fit the sound badly: it may be noisy, or in another language."
             if transcript.heard
-            else f"The text is hardly what is said: {len(unsure)} of {len(transcript.said)} words do not fit the sound."
+            else f"The text is hardly what is said: {counted(len(unsure), 'word')} of {len(transcript.said):,} {plural(len(unsure), 'does', 'do')} not fit the sound."
         )
     named = ", ".join(f"{each.word!r} at {each.start_s:.2f} s" for each in unsure[:NAMED])
     more = "…" if len(unsure) > NAMED else ""
-    fit = "does not fit" if len(unsure) == 1 else "do not fit"
-    return f"{'A word' if len(unsure) == 1 else f'{len(unsure)} words'} of the {source} {fit} the sound: {named}{more or '.'}"
+    fit = plural(len(unsure), "does not fit", "do not fit")
+    return f"{counted(len(unsure), 'word')} of the {source} {fit} the sound: {named}{more or '.'}"

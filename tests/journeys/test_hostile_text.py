@@ -39,7 +39,7 @@ from tests.engine.project.projects import an_edit
 from tests.journeys.conftest import load, settled
 
 UNSAFE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-WIDEST_PX, LONGEST = 1280, 2100
+WIDEST_PX, LONGEST = 1280, 2200  # places to break long words at count too
 HOSTILE = {
     "picture": "<img src=/dev/zero>",
     "bold": "<b>bold</b> & <a href='file:///'>link</a>",

@@ -55,7 +55,11 @@ def pick(qtbot: QtBot, box: QComboBox, index: int) -> None:
 
 
 def undone(window: MainWindow) -> None:
+    steps = window.session.document.undo
+    QTest.qWaitFor(lambda: window.actions_by_name["undo"].isEnabled() and window.isActiveWindow(), 10_000)
+    index = steps.index()
     QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert QTest.qWaitFor(lambda: steps.index() == index - 1, 10_000)
 
 
 def dropped(window: MainWindow, path: Path) -> None:

@@ -28,7 +28,7 @@ def test_where_all_scores_are_low_a_word_is_measured_by_the_others_but_a_text_th
     ("sure", "heard", "sentence"),
     [
         ((0.9, 0.8, 0.9), False, ""),
-        ((0.9, 0.1, 0.9), False, "A word of the text does not fit the sound: 'w1' at 1.00 s."),
+        ((0.9, 0.1, 0.9), False, "1 word of the text does not fit the sound: 'w1' at 1.00 s."),
         ((0.1, 0.1, 0.9), False, "The text is hardly what is said: 2 of 3 words do not fit the sound."),
         ((0.1, 0.1, 0.9), True, "The words that were heard fit the sound badly: it may be noisy, or in another language."),
         ((0.9,) * 9 + (0.1,) * 5, False, "5 words of the text do not fit the sound: 'w9' at 9.00 s, 'w10' at 10.00 s, "
