@@ -105,7 +105,8 @@ def doubt(transcript: Transcript) -> str:
         return (
             "The words that were heard fit the sound badly: it may be noisy, or in another language."
             if transcript.heard
-            else f"The text is hardly what is said: {counted(len(unsure), 'word')} of {len(transcript.said):,} {plural(len(unsure), 'does', 'do')} not fit the sound."
+            else f"The text is hardly what is said: {len(unsure):,} of {counted(len(transcript.said), 'word')} "
+            f"{plural(len(unsure), 'does', 'do')} not fit the sound."
         )
     named = ", ".join(f"{each.word!r} at {each.start_s:.2f} s" for each in unsure[:NAMED])
     more = "…" if len(unsure) > NAMED else ""

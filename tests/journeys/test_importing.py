@@ -54,12 +54,12 @@ def pick(qtbot: QtBot, box: QComboBox, index: int) -> None:
         QTest.mouseClick(view.viewport(), LEFT, pos=place)
 
 
-def undone(window: MainWindow) -> None:
+def undone(qtbot: QtBot, window: MainWindow) -> None:
     steps = window.session.document.undo
-    QTest.qWaitFor(lambda: window.actions_by_name["undo"].isEnabled() and window.isActiveWindow(), 10_000)
+    qtbot.waitUntil(lambda: window.actions_by_name["undo"].isEnabled() and window.isActiveWindow(), timeout=10_000)
     index = steps.index()
     QTest.keyClick(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
-    assert QTest.qWaitFor(lambda: steps.index() == index - 1, 10_000)
+    qtbot.waitUntil(lambda: steps.index() == index - 1, timeout=10_000)
 
 
 def dropped(window: MainWindow, path: Path) -> None:
@@ -92,7 +92,7 @@ def test_the_rate_is_changed_by_mouse_and_undone(qtbot: QtBot, window: MainWindo
     assert window.status["rate"].text() == "60 fps" and window.session.document.undo.undoText() == "rate 60 fps"
     assert window.curves.hasFocus()
     np.testing.assert_array_equal(window.session.document.take.weights, weights)
-    undone(window)
+    undone(qtbot, window)
     assert window.session.document.take.fps == 30.0 and line.rate.currentText() == "30 fps"
     assert window.status["rate"].text() == "30 fps" and line.rate_reason.text() == "from timecodes"
     window.session.document.undo.redo()
@@ -127,7 +127,7 @@ def test_the_sides_are_changed_by_mouse_and_undone(qtbot: QtBot, window: MainWin
     np.testing.assert_array_equal(window.session.document.take.weights, exchange(before))
     assert line.sides.currentText() == "as named" and "the motion says as the app records" in line.sides.toolTip()
     assert window.session.document.undo.undoText() == "sides as named"
-    undone(window)
+    undone(qtbot, window)
     np.testing.assert_array_equal(window.session.document.take.weights, before)
     assert line.sides.currentText() == "automatic: as the app records"
     pick(qtbot, line.sides, 1)  # the same sides, by hand
@@ -152,8 +152,8 @@ def test_the_project_remembers_both(
     np.testing.assert_array_equal(window.session.document.take.weights, weights)
     window.actions_by_name["show_import"].trigger()
     assert window.importing.sides.currentText() == "as named" and window.importing.rate.currentText() == "25 fps"
-    undone(window)
-    undone(window)
+    undone(qtbot, window)
+    undone(qtbot, window)
     assert window.session.document.take.fps == 30.0
     np.testing.assert_array_equal(window.session.document.take.weights, exchange(weights))
 
