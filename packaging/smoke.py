@@ -22,7 +22,7 @@ from pathlib import Path
 PATIENCE_S = 90.0
 WIDTH, HEIGHT = 1440, 900
 SETTLE_S, PAUSE_S = 15.0, 8.0  # while networks and preview are loaded beside the window; after each step
-PEAK = (729, 160)  # px, on the upper curve where the jaw is open
+PEAK = (701, 215)  # px, on the upper curve where the jaw is open
 FRAMES, FPS = 240, 30
 EDITS = 2  # a drag and a fill
 LOST = range(120, 150)
