@@ -152,8 +152,8 @@ def test_the_project_remembers_both(
     np.testing.assert_array_equal(window.session.document.take.weights, weights)
     window.actions_by_name["show_import"].trigger()
     assert window.importing.sides.currentText() == "as named" and window.importing.rate.currentText() == "25 fps"
-    undone(qtbot, window)
-    undone(qtbot, window)
+    while window.session.document.undo.index() > 1:  # a choice by keys may pass another one, which is a step too
+        undone(qtbot, window)
     assert window.session.document.take.fps == 30.0
     np.testing.assert_array_equal(window.session.document.take.weights, exchange(weights))
 
