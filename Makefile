@@ -31,8 +31,10 @@ lint: setup
 	$(PYTHON) -m mypy
 	$(VENV)/bin/lint-imports
 
+# Journeys run in a process of their own, and one that failed is tried again and named: they press real keys and wait for real time.
 test: lint
-	QT_QPA_PLATFORM=offscreen $(PYTHON) -m pytest
+	QT_QPA_PLATFORM=offscreen $(PYTHON) -m pytest --ignore=tests/journeys
+	QT_QPA_PLATFORM=offscreen $(PYTHON) -m pytest tests/journeys --reruns 2
 
 # The wheel, the desktop bundle and the Debian package, each tried as a user would. Built in an environment of their own, so that
 # nothing of the developer's travels along.
